@@ -1,0 +1,66 @@
+#include "patina/core/error.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace patina {
+
+namespace {
+
+// Levenshtein's edit distance, one row at a time.
+size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), size_t{0});
+    for (size_t i = 1; i <= a.size(); ++i) {
+        size_t diagonal = row[0];
+        row[0] = i;
+        for (size_t j = 1; j <= b.size(); ++j) {
+            const size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+            diagonal = row[j];
+            row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
+        }
+    }
+    return row.back();
+}
+
+std::string compose(std::string_view where, std::string_view problem, std::string_view why, std::string_view suggestion) {
+    std::string message;
+    if (!where.empty()) message += fmt::format("{}: ", where);
+    message += problem;
+    if (!why.empty()) message += fmt::format(" ({})", why);
+    if (!suggestion.empty()) message += fmt::format(" {}", suggestion);
+    return message;
+}
+
+}  // namespace
+
+std::string SourceLocation::to_string() const {
+    std::string text = file;
+    if (line > 0) text += fmt::format(":{}", line);
+    if (line > 0 && column > 0) text += fmt::format(":{}", column);
+    return text;
+}
+
+Error input_error(const SourceLocation& where, std::string_view problem, std::string_view why,
+                  std::string_view suggestion) {
+    return Error(ErrorKind::input, compose(where.to_string(), problem, why, suggestion));
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates, bool list_all) {
+    // Words of the user can be a million characters long; a distance to those means nothing.
+    constexpr size_t longest_word = 64;
+    if (candidates.empty()) return {};
+    if (word.size() <= longest_word) {
+        const auto nearest = std::min_element(candidates.begin(), candidates.end(), [&](const auto& a, const auto& b) {
+            return edit_distance(word, a) < edit_distance(word, b);
+        });
+        const size_t acceptable = std::max<size_t>(2, word.size() / 3);
+        if (edit_distance(word, *nearest) <= acceptable) return fmt::format("did you mean \"{}\"?", *nearest);
+    }
+    return list_all ? fmt::format("known: {}", fmt::join(candidates, ", ")) : std::string{};
+}
+
+}  // namespace patina
