@@ -15,6 +15,8 @@ find_package(tinyobjloader REQUIRED)
 # a C compiler. Both libraries have sound pkg-config files.
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(OPENEXR REQUIRED IMPORTED_TARGET OpenEXR)
+# Its -pthread would make every source that uses it unfit for the precompiled headers; Threads::Threads links what is needed.
+set_property(TARGET PkgConfig::OPENEXR PROPERTY INTERFACE_COMPILE_OPTIONS "")
 pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)
 if(PATINA_TESTS)
   find_package(GTest REQUIRED)

@@ -1,0 +1,56 @@
+#pragma once
+// The renderer's front door: a tree of plugins becomes a scene, a scene becomes a picture with polarization.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "patina/core/progress.h"
+#include "patina/core/properties.h"
+#include "patina/core/stokes_image.h"
+#include "patina/render/scene_resources.h"
+
+namespace patina::render {
+
+class Scene;  // render/scene.h: immutable, shared between threads
+
+// Builds everything a scene file describes. `root` is the node of category "scene" with children integrator, sensor,
+// shape, emitter, bsdf (those with an id, referenced elsewhere). File names are strings ("filename") already resolved.
+// Throws Error(input) at the place in the file for unknown plugins and properties, values out of range and degenerate
+// geometry, with the nearest legal name.
+std::shared_ptr<const Scene> build_scene(const Properties& root, const SceneResources& resources);
+
+// What the command line may override; empty = as the scene says.
+struct RenderOptions {
+    std::optional<int> samples_per_pixel;      // sampler's sample_count; the default without either is 16
+    std::optional<double> time_limit_seconds;  // stop after the pass during which it elapsed
+    std::optional<double> noise_target;        // stop when the relative standard error of the mean luminance,
+                                               // root mean square over the pixels, falls below
+    std::optional<std::pair<int, int>> size;   // width, height of the film
+    std::optional<std::array<int, 4>> crop;    // x0, y0, x1, y1 in pixels of the film, x1 and y1 exclusive
+    std::optional<std::string> integrator;     // plugin name in place of the scene's
+    std::optional<std::uint64_t> seed;
+    std::vector<double> bin_edges_nm;  // spectral bins; empty = 16 bins over 380 .. 780 nm
+};
+
+// Renders; the same scene, options and seed give the same bits for every number of threads (time and noise limits
+// decide only after which pass to stop). When JobControl asks to stop, the passes done so far are returned with the
+// metadata "stopped" = "yes". Samples that are not finite are left out, counted and located in the metadata
+// "non_finite_samples"; more than one in 10^4 is an Error(runtime).
+StokesImage render(const Scene& scene, const RenderOptions& options, const JobControl& control = {});
+
+// The registry, for help, documentation and property tests.
+struct ParameterDescriptor {
+    std::string name, type, unit, default_value, range, doc;
+};
+struct PluginDescriptor {
+    std::string category, name, doc;
+    std::vector<ParameterDescriptor> parameters;
+};
+const std::vector<PluginDescriptor>& plugins();
+
+}  // namespace patina::render
