@@ -15,6 +15,22 @@ LinearInterval linear_interval(std::span<const double> axis, double value) {
     return {upper - 1, upper, (value - axis[upper - 1]) / (axis[upper] - axis[upper - 1])};
 }
 
+CubicInterval cubic_interval(std::span<const double> axis, double value) {
+    const int size = static_cast<int>(axis.size()), lower = linear_interval(axis, value).lower;
+    CubicInterval interval;
+    interval.count = std::min(size, 4);
+    interval.first = std::clamp(lower - 1, 0, size - interval.count);
+    const double x = std::clamp(value, axis.front(), axis.back());
+    for (int j = 0; j < interval.count; ++j) {
+        interval.weights[j] = 1.0;
+        for (int k = 0; k < interval.count; ++k)
+            if (k != j)
+                interval.weights[j] *=
+                    (x - axis[interval.first + k]) / (axis[interval.first + j] - axis[interval.first + k]);
+    }
+    return interval;
+}
+
 BarycentricInterpolation::BarycentricInterpolation(std::span<const double> nodes)
     : nodes_(Eigen::VectorXd::Map(nodes.data(), static_cast<Eigen::Index>(nodes.size()))),
       barycentric_weights_(Eigen::VectorXd::Ones(nodes_.size())) {

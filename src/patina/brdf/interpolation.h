@@ -14,6 +14,13 @@ struct LinearInterval {
 };
 LinearInterval linear_interval(std::span<const double> ascending_axis, double value);
 
+// The cubic through the four nearest points of an ascending axis (fewer when the axis is shorter); clamped at the ends.
+struct CubicInterval {
+    int first = 0, count = 1;
+    double weights[4] = {1, 0, 0, 0};
+};
+CubicInterval cubic_interval(std::span<const double> ascending_axis, double value);
+
 // Lagrange interpolation on fixed nodes in the barycentric form, stable for Gauss nodes (Berrut & Trefethen 2004, SIAM
 // Review 46, eq. 4.2). The nodes must be distinct.
 class BarycentricInterpolation {

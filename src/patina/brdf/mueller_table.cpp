@@ -207,11 +207,12 @@ MuellerGrid MuellerTable::evaluate_grid(double wavelength_nm, std::span<const do
 
 Mueller MuellerTable::specular(double wavelength_nm, double mu_i) const {
     PATINA_EXPECT(mu_i >= 0 && mu_i <= 1);
-    const LinearInterval angle = linear_interval(specular_theta_deg, degrees(std::acos(mu_i)));
-    const auto at = [&](int w) -> Mueller {
-        const Mueller lower = specular_surface[w][angle.lower] + specular_coherent[w][angle.lower];
-        const Mueller upper = specular_surface[w][angle.upper] + specular_coherent[w][angle.upper];
-        return (1 - angle.upper_weight) * lower + angle.upper_weight * upper;
+    const CubicInterval angle = cubic_interval(specular_theta_deg, degrees(std::acos(mu_i)));
+    const auto at = [&](int w) {
+        Mueller sum = Mueller::Zero();
+        for (int k = 0; k < angle.count; ++k)
+            sum += angle.weights[k] * (specular_surface[w][angle.first + k] + specular_coherent[w][angle.first + k]);
+        return sum;
     };
     const LinearInterval interval = linear_interval(wavelengths_nm, wavelength_nm);
     return (1 - interval.upper_weight) * at(interval.lower) + interval.upper_weight * at(interval.upper);

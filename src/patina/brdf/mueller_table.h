@@ -70,7 +70,8 @@ class MuellerTable {
     MuellerGrid evaluate_grid(double wavelength_nm, std::span<const double> mu_o, std::span<const double> mu_i,
                               std::span<const double> phi) const;
 
-    // The delta part (surface + coherent) along the mirror direction, linear in the angle of incidence.
+    // The delta part (surface + coherent) along the mirror direction; cubic in the angle of incidence, whose steep end
+    // at grazing a straight line between whole degrees would miss by 1e-3.
     optics::Mueller specular(double wavelength_nm, double mu_i) const;
 
     // Directional-hemispherical reflectance of the body for a Stokes vector incident at mu_i.
