@@ -10,7 +10,6 @@ find_package(pugixml REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(PNG REQUIRED)
 find_package(embree 3 REQUIRED)
-find_package(tinyobjloader REQUIRED)
 # Debian 12's CMake files of Imath name a Python library that its package does not ship; CMake's own module for HDF5 wants
 # a C compiler. Both libraries have sound pkg-config files.
 find_package(PkgConfig REQUIRED)

@@ -207,7 +207,7 @@ std::optional<fs::path> SceneReader::find_file(const LocatedText& name) const {
     for (const fs::path& folder : folders) {
         std::error_code status_error;
         const fs::path candidate = folder / name.text;
-        if (fs::is_regular_file(candidate, status_error)) return candidate;
+        if (fs::is_regular_file(candidate, status_error)) return fs::absolute(candidate).lexically_normal();
     }
     return std::nullopt;
 }

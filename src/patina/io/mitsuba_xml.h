@@ -6,7 +6,8 @@
 //
 // - The root's category and type are "scene"; a child's category is its tag, its type the attribute `type`.
 // - A <ref> becomes a child holding the very node it names, which may come later in the file.
-// - Properties named filename, recipe and table name a file: the value becomes the path of an existing file, looked for
+// - Properties named filename, recipe and table name a file: the value becomes the absolute path of an existing file,
+// looked for
 //   beside the file that names it, beside the scene, and in the folders of <path>. It is an error when there is none.
 //   A `material` becomes a path only when such a file exists, for it may also be the name of a built-in material.
 // - <spectrum filename="x.spd"> is read here and becomes a sampled spectrum.

@@ -1,6 +1,5 @@
 #include "patina/io/mitsuba_xml.h"
 
-#include <fstream>
 #include <random>
 
 #include <fmt/format.h>
@@ -8,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "patina/core/files.h"
+#include "patina/io/scratch_folder_for_tests.h"
 
 namespace patina::io {
 namespace {
@@ -40,23 +40,6 @@ Eigen::Matrix4d transform_of(const std::string& operations) {
         ->only_child("shape")
         ->transform("t");
 }
-
-// A folder that goes away with the test.
-class ScratchFolder {
-  public:
-    ScratchFolder() : path_(fs::temp_directory_path() / fmt::format("patina_xml_{}", std::random_device{}())) {
-        fs::create_directories(path_);
-    }
-    ~ScratchFolder() { fs::remove_all(path_); }
-    fs::path write(const std::string& name, const std::string& text) const {
-        fs::create_directories((path_ / name).parent_path());
-        std::ofstream(path_ / name) << text;
-        return path_ / name;
-    }
-
-  private:
-    fs::path path_;
-};
 
 TEST(MitsubaXml, ReadsAPlainMitsubaSceneUnmodified) {
     const auto scene = read_mitsuba_scene(fs::path(PATINA_SOURCE_DIR) / "examples/polar_balls.xml", {{"spp", "16"}});
