@@ -41,8 +41,9 @@ TEST(Fresnel, ReflectionPlusRefractionConserveEnergy) {
     for (auto [n1, n2] : {std::pair{1.0, 1.5}, {1.5, 1.0}, {1.495, 1.0}, {1.33, 1.52}})
         for (double cos_i : {1e-6, 0.05, 0.3, 0.6, 0.7454, 0.75, 0.9, 1.0}) {
             const Mueller sum = fresnel_reflection(cos_i, n1, n2) + fresnel_transmission(cos_i, n1, n2);
-            // For every polarization in the basis of the plane of incidence: the first row is (1, 0, 0, 0).
-            EXPECT_NEAR((sum.row(0) - Eigen::RowVector4d(1, 0, 0, 0)).norm(), 0.0, 1e-14) << n1 << n2 << cos_i;
+            // For every polarization the first row of the sum is (1, 0, 0, 0); the steep cosine near the critical angle, 0.7454, costs a
+            // digit.
+            EXPECT_NEAR((sum.row(0) - Eigen::RowVector4d(1, 0, 0, 0)).norm(), 0.0, 1e-13) << n1 << n2 << cos_i;
         }
 }
 

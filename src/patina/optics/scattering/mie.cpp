@@ -110,7 +110,7 @@ void fill_multipoles(double x, Scalar m, int order, std::vector<Complex>& a, std
 }  // namespace
 
 int mie_order(double size_parameter) {
-    return static_cast<int>(size_parameter + 4.3 * std::cbrt(size_parameter) + 3.0);
+    return static_cast<int>(size_parameter + 4.5 * std::cbrt(size_parameter) + 5.0);
 }
 
 MieSphere::MieSphere(double size_parameter, Complex relative_index) : size_parameter_(size_parameter) {
