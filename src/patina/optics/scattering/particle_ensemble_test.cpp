@@ -39,7 +39,8 @@ TEST(ParticleEnsemble, MonodisperseIsTheSphereItself) {
     }
 }
 
-// The particles of a polarized Monte Carlo reference: log-normal, 0.125 um, 1.3, index 2.75 in 1.495, 550 nm; six digits.
+// The particles of a polarized Monte Carlo reference: log-normal, 0.125 um, 1.3, index 2.75 in 1.495, 550 nm; six
+// digits.
 TEST(ParticleEnsemble, TitaniaOfTheMonteCarloReference) {
     const ScatteringProperties p = scatter(2.75, 1.495, 550, {LogNormal{0.125, 1.3}});
     EXPECT_NEAR(p.extinction_um2, 0.222813, 6e-7);
@@ -49,12 +50,13 @@ TEST(ParticleEnsemble, TitaniaOfTheMonteCarloReference) {
     EXPECT_NEAR(p.mean_volume_um3 / mean_volume_um3({LogNormal{0.125, 1.3}}), 1.0, 1e-5);
 }
 
-// Orders an independent prototype needed at 1e-6 for sigma_g 1.3 at 550 nm: 9, 16, 18, 28, 72. Counting every coefficient above 1e-6
-// takes up to two more.
+// Orders an independent prototype needed at 1e-6 for sigma_g 1.3 at 550 nm: 9, 16, 18, 28, 72. Counting every
+// coefficient above 1e-6 takes up to two more.
 TEST(ParticleEnsemble, OrderOfTheExpansionGrowsWithSize) {
     constexpr std::pair<double, int> orders[] = {{0.05, 9}, {0.1, 16}, {0.125, 18}, {0.2, 28}, {0.5, 72}};
     for (auto [r, order] : orders) {
-        const ScatteringProperties p = scatter(2.75, 1.495, 550, {LogNormal{r, 1.3}}, {.tolerance = 1e-6, .max_radii = 1100});
+        const ScatteringProperties p =
+            scatter(2.75, 1.495, 550, {LogNormal{r, 1.3}}, {.tolerance = 1e-6, .max_radii = 1100});
         EXPECT_GE(p.expansion.order(), order) << r;
         EXPECT_LE(p.expansion.order(), order + 2) << r;
     }
@@ -62,7 +64,9 @@ TEST(ParticleEnsemble, OrderOfTheExpansionGrowsWithSize) {
 
 // The error estimate bounds the error against a far finer average, resonances included.
 TEST(ParticleEnsemble, KeepsItsTolerance) {
-    for (auto [m, r, sigma] : {std::tuple{Complex(2.75), 0.125, 1.3}, {Complex(2.75), 0.2, 1.3}, {Complex(3.19, 0.48), 0.2, 1.5},
+    for (auto [m, r, sigma] : {std::tuple{Complex(2.75), 0.125, 1.3},
+                               {Complex(2.75), 0.2, 1.3},
+                               {Complex(3.19, 0.48), 0.2, 1.5},
                                {Complex(0.423, 2.48), 0.05, 1.2}}) {
         const SizeDistribution d{LogNormal{r, sigma}};
         const ScatteringProperties reference = scatter(m, 1.495, 550, d, {.tolerance = 1e-8, .max_radii = 9000});
@@ -77,15 +81,17 @@ TEST(ParticleEnsemble, KeepsItsTolerance) {
     }
 }
 
-// Small absorbing particles absorb by their volume, whatever the distribution (Rayleigh): C_abs/V = 3 k Im((m^2-1)/(m^2+2)).
+// Small absorbing particles absorb by their volume, whatever the distribution (Rayleigh): C_abs/V = 3 k
+// Im((m^2-1)/(m^2+2)).
 TEST(ParticleEnsemble, VolumeAbsorptionDoesNotDependOnTheDistribution) {
     const Complex m(1.5, 0.1);
     const double wavelength_um = 100.0;
     const double expected = 3 * 2 * pi / wavelength_um * ((m * m - 1.0) / (m * m + 2.0)).imag();
     for (const SizeDistribution& d :
          {SizeDistribution{LogNormal{1e-3, 1.4}}, SizeDistribution{LogNormal{1e-3, 1.4}, SizeWeighting::volume},
-          SizeDistribution{Gamma{1e-3, 0.2}}, SizeDistribution{ModifiedGamma{2, 1, 1e-3}}, SizeDistribution{PowerLaw{3.5, 1e-4, 1e-2}},
-          SizeDistribution{RosinRammler{1e-3, 0.9}, SizeWeighting::volume}, SizeDistribution{Histogram{{1e-4, 1e-3, 2e-3}, {1, 2}}}}) {
+          SizeDistribution{Gamma{1e-3, 0.2}}, SizeDistribution{ModifiedGamma{2, 1, 1e-3}},
+          SizeDistribution{PowerLaw{3.5, 1e-4, 1e-2}}, SizeDistribution{RosinRammler{1e-3, 0.9}, SizeWeighting::volume},
+          SizeDistribution{Histogram{{1e-4, 1e-3, 2e-3}, {1, 2}}}}) {
         const ScatteringProperties p = scatter(m, 1.0, 1e3 * wavelength_um, d, {.tolerance = 1e-6});
         // Corrections of the order of x^2 < 1e-6, and the tolerance.
         EXPECT_NEAR(p.absorption_um2 / p.mean_volume_um3 / expected, 1.0, 3e-6) << d.shape.index();

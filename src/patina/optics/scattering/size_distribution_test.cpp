@@ -22,15 +22,18 @@ constexpr double tight = 1e-10;
 TEST(SizeDistribution, LogNormalMoments) {
     const double r = 0.125, s = std::log(1.3);
     const SizeDistribution d{LogNormal{r, 1.3}};
-    for (double p : {1.0, 2.0, 3.0}) EXPECT_NEAR(moment(d, p) / (std::pow(r, p) * std::exp(0.5 * p * p * s * s)), 1.0, tight);
+    for (double p : {1.0, 2.0, 3.0})
+        EXPECT_NEAR(moment(d, p) / (std::pow(r, p) * std::exp(0.5 * p * p * s * s)), 1.0, tight);
     EXPECT_NEAR(mean_volume_um3(d) / (4.0 / 3.0 * pi * r * r * r * std::exp(4.5 * s * s)), 1.0, tight);
     EXPECT_NEAR(effective_radius_um(d) / (r * std::exp(2.5 * s * s)), 1.0, tight);
 }
 
-// Hatch & Choate (1929): a log-normal distribution by volume is one by number with the median divided by exp(3 ln^2 sigma).
+// Hatch & Choate (1929): a log-normal distribution by volume is one by number with the median divided by exp(3 ln^2
+// sigma).
 TEST(SizeDistribution, WeightingsOfALogNormal) {
     const double s2 = std::pow(std::log(1.5), 2);
-    const SizeDistribution volume{LogNormal{0.3, 1.5}, SizeWeighting::volume}, number{LogNormal{0.3 * std::exp(-3 * s2), 1.5}};
+    const SizeDistribution volume{LogNormal{0.3, 1.5}, SizeWeighting::volume},
+        number{LogNormal{0.3 * std::exp(-3 * s2), 1.5}};
     const SizeDistribution area{LogNormal{0.3 * std::exp(-s2), 1.5}, SizeWeighting::area};
     for (double p : {1.0, 2.0, 3.0}) {
         EXPECT_NEAR(moment(volume, p) / moment(number, p), 1.0, tight) << p;
@@ -55,8 +58,8 @@ TEST(SizeDistribution, ModifiedGammaMoments) {
     const double alpha = 2, gamma = 0.5, r = 0.07;
     const SizeDistribution d{ModifiedGamma{alpha, gamma, r}};
     for (double p : {1.0, 2.0, 3.0}) {
-        const double expected = std::pow(r, p) * std::pow(gamma / alpha, p / gamma) * std::tgamma((alpha + 1 + p) / gamma) /
-                                std::tgamma((alpha + 1) / gamma);
+        const double expected = std::pow(r, p) * std::pow(gamma / alpha, p / gamma) *
+                                std::tgamma((alpha + 1 + p) / gamma) / std::tgamma((alpha + 1) / gamma);
         EXPECT_NEAR(moment(d, p) / expected, 1.0, 1e-9) << p;
     }
 }
@@ -79,7 +82,9 @@ TEST(SizeDistribution, RosinRammlerByVolume) {
 
 TEST(SizeDistribution, HistogramMoments) {
     const SizeDistribution d{Histogram{{0.1, 0.2, 0.3, 0.6}, {2.0, 0.0, 1.0}}};
-    const auto mean = [](double p, double a, double b) { return (std::pow(b, p) - std::pow(a, p)) / (p * std::log(b / a)); };
+    const auto mean = [](double p, double a, double b) {
+        return (std::pow(b, p) - std::pow(a, p)) / (p * std::log(b / a));
+    };
     for (double p : {1.0, 2.0, 3.0})
         EXPECT_NEAR(moment(d, p) / ((2 * mean(p, 0.1, 0.2) + mean(p, 0.3, 0.6)) / 3), 1.0, 1e-12) << p;
     const SizeDistribution v{Histogram{{0.1, 0.2, 0.3, 0.6}, {2.0, 0.0, 1.0}}, SizeWeighting::volume};
@@ -90,8 +95,11 @@ TEST(SizeDistribution, RulesNest) {
     for (const SizeDistribution& d : {SizeDistribution{LogNormal{0.1, 1.4}}, SizeDistribution{PowerLaw{3, 0.1, 1}},
                                       SizeDistribution{Histogram{{0.1, 0.2, 0.4}, {1, 2}}}}) {
         const RadiusRange range = relevant_range(d, 10.0, 1e-6);
-        const auto number = [](const RadiusRule& rule) { return std::accumulate(rule.weights.begin(), rule.weights.end(), 0.0); };
-        const RadiusRule coarse = radius_rule(d, range, 32), fine = radius_rule(d, range, 64), added = radius_rule(d, range, 64, true);
+        const auto number = [](const RadiusRule& rule) {
+            return std::accumulate(rule.weights.begin(), rule.weights.end(), 0.0);
+        };
+        const RadiusRule coarse = radius_rule(d, range, 32), fine = radius_rule(d, range, 64),
+                         added = radius_rule(d, range, 64, true);
         EXPECT_EQ(fine.radii_um.size(), coarse.radii_um.size() + added.radii_um.size());
         EXPECT_NEAR(number(fine), 0.5 * number(coarse) + number(added), 1e-14 * number(fine));
     }
@@ -109,11 +117,13 @@ TEST(SizeDistribution, RefusesWhatIsNotPhysical) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const SizeDistribution& d :
          {SizeDistribution{Monodisperse{0}}, SizeDistribution{Monodisperse{nan}}, SizeDistribution{LogNormal{-1, 1.3}},
-          SizeDistribution{LogNormal{0.1, 1.0}}, SizeDistribution{LogNormal{0.1, 99}}, SizeDistribution{LogNormal{0.1, nan}},
-          SizeDistribution{Gamma{1, 0.5}}, SizeDistribution{Gamma{1, 0}}, SizeDistribution{ModifiedGamma{-1, 1, 1}},
-          SizeDistribution{ModifiedGamma{1, 0, 1}}, SizeDistribution{PowerLaw{3, 1, 0.1}}, SizeDistribution{PowerLaw{nan, 0.1, 1}},
-          SizeDistribution{RosinRammler{1, 0}}, SizeDistribution{Histogram{{1, 2}, {1, 2}}}, SizeDistribution{Histogram{{2, 1}, {1}}},
-          SizeDistribution{Histogram{{1, 2}, {-1}}}, SizeDistribution{Histogram{{1, 2}, {0}}}, SizeDistribution{Histogram{}}}) {
+          SizeDistribution{LogNormal{0.1, 1.0}}, SizeDistribution{LogNormal{0.1, 99}},
+          SizeDistribution{LogNormal{0.1, nan}}, SizeDistribution{Gamma{1, 0.5}}, SizeDistribution{Gamma{1, 0}},
+          SizeDistribution{ModifiedGamma{-1, 1, 1}}, SizeDistribution{ModifiedGamma{1, 0, 1}},
+          SizeDistribution{PowerLaw{3, 1, 0.1}}, SizeDistribution{PowerLaw{nan, 0.1, 1}},
+          SizeDistribution{RosinRammler{1, 0}}, SizeDistribution{Histogram{{1, 2}, {1, 2}}},
+          SizeDistribution{Histogram{{2, 1}, {1}}}, SizeDistribution{Histogram{{1, 2}, {-1}}},
+          SizeDistribution{Histogram{{1, 2}, {0}}}, SizeDistribution{Histogram{}}}) {
         try {
             validate(d, {"paint.toml", 7, 3});
             ADD_FAILURE() << "accepted a distribution of kind " << d.shape.index();

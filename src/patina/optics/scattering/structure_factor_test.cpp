@@ -17,10 +17,12 @@ TEST(PercusYevick, Limits) {
 
 TEST(PercusYevick, SeriesMeetsTheClosedForm) {
     // On both sides of the change at x = 2; S' < 1.
-    for (double f : {0.05, 0.3, 0.6}) EXPECT_NEAR(percus_yevick(f, 2.0 - 1e-14), percus_yevick(f, 2.0 + 1e-14), 2e-14) << f;
+    for (double f : {0.05, 0.3, 0.6})
+        EXPECT_NEAR(percus_yevick(f, 2.0 - 1e-14), percus_yevick(f, 2.0 + 1e-14), 2e-14) << f;
 }
 
-// First order in f: S = 1 - f 24 (sin x - x cos x)/x^3, the excluded volume of two spheres (the Fourier transform of a ball of radius d).
+// First order in f: S = 1 - f 24 (sin x - x cos x)/x^3, the excluded volume of two spheres (the Fourier transform of a
+// ball of radius d).
 TEST(PercusYevick, DiluteLimitIsTheExcludedVolume) {
     const double f = 1e-6;
     for (double x : {0.5, 1.5, 4.0, 10.0}) {
@@ -30,8 +32,8 @@ TEST(PercusYevick, DiluteLimitIsTheExcludedVolume) {
     }
 }
 
-// The contact value 1 + int (S-1) sin(x)/x x^2 dx / (12 pi f)... is hard to sum; the first peak instead. Ashcroft & Lekner (1966), Phys.
-// Rev. 145, 83: at the packing 0.45 of liquid metals the main peak is 2.5 high at q d = 6.9.
+// The contact value 1 + int (S-1) sin(x)/x x^2 dx / (12 pi f)... is hard to sum; the first peak instead. Ashcroft &
+// Lekner (1966), Phys. Rev. 145, 83: at the packing 0.45 of liquid metals the main peak is 2.5 high at q d = 6.9.
 TEST(PercusYevick, MainPeakOfALiquid) {
     double height = 0.0, position = 0.0;
     for (double x = 5.0; x < 9.0; x += 0.01)
@@ -40,8 +42,8 @@ TEST(PercusYevick, MainPeakOfALiquid) {
     EXPECT_NEAR(position, 6.9, 0.15);
 }
 
-// Crowding of white paint: (1-g) C_sca of TiO2 spheres, r = 0.1 um, n = 2.75 in 1.495 at 550 nm, relative to independent ones, by an
-// independent prototype.
+// Crowding of white paint: (1-g) C_sca of TiO2 spheres, r = 0.1 um, n = 2.75 in 1.495 at 550 nm, relative to
+// independent ones, by an independent prototype.
 TEST(PercusYevick, CrowdingOfWhitePaint) {
     const SizeDistribution size{Monodisperse{0.1}};
     const auto transport = [&](double f) {
