@@ -35,7 +35,8 @@ FresnelAmplitudes fresnel_amplitudes(double cos_i, Complex n1, Complex n2) {
     const Complex s = n1 * cos_i + n2 * cos_t;
     // Grazing incidence on a matched medium is 0/0; nothing is reflected there.
     if (std::abs(p) == 0.0 || std::abs(s) == 0.0) return {0.0, 0.0, 1.0, 1.0, cos_t};
-    return {(n2 * cos_i - n1 * cos_t) / p, (n1 * cos_i - n2 * cos_t) / s, 2.0 * n1 * cos_i / p, 2.0 * n1 * cos_i / s, cos_t};
+    return {(n2 * cos_i - n1 * cos_t) / p, (n1 * cos_i - n2 * cos_t) / s, 2.0 * n1 * cos_i / p, 2.0 * n1 * cos_i / s,
+            cos_t};
 }
 
 Mueller fresnel_reflection(double cos_i, Complex n1, Complex n2) {

@@ -11,12 +11,20 @@ namespace {
 
 using Eigen::ArrayXd;
 
-// d^l_00, d^l_02, d^l_22, d^l_2,-2 at many cosines, l ascending (the recurrence of math/wigner_d.h, all angles at once).
+// d^l_00, d^l_02, d^l_22, d^l_2,-2 at many cosines, l ascending (the recurrence of math/wigner_d.h, all angles at
+// once).
 class WignerColumns {
   public:
     explicit WignerColumns(const ArrayXd& cosines)
-        : x_(cosines), d00_(ArrayXd::Ones(x_.size())), d02_(ArrayXd::Zero(x_.size())), d22_(d02_), d2m2_(d02_),
-          d00_previous_(d02_), d02_previous_(d02_), d22_previous_(d02_), d2m2_previous_(d02_) {}
+        : x_(cosines),
+          d00_(ArrayXd::Ones(x_.size())),
+          d02_(ArrayXd::Zero(x_.size())),
+          d22_(d02_),
+          d2m2_(d02_),
+          d00_previous_(d02_),
+          d02_previous_(d02_),
+          d22_previous_(d02_),
+          d2m2_previous_(d02_) {}
 
     const ArrayXd& d00() const { return d00_; }
     const ArrayXd& d02() const { return d02_; }

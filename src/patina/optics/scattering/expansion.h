@@ -11,9 +11,9 @@ struct ScatteringElements {
     double a1, a2, a3, a4, b1, b2;
 };
 
-// Coefficients by Gauss quadrature on the matrix' own nodes (de Haan, Bosma & Hovenier 1987, eqs 68-73), up to the first order beyond
-// which every coefficient stays below `tolerance`; at least order 2. Exact for matrices whose degree is below the number of nodes.
-// An alpha1[0] other than 1, from a matrix that is not normalised, is kept.
+// Coefficients by Gauss quadrature on the matrix' own nodes (de Haan, Bosma & Hovenier 1987, eqs 68-73), up to the
+// first order beyond which every coefficient stays below `tolerance`; at least order 2. Exact for matrices whose degree
+// is below the number of nodes. An alpha1[0] other than 1, from a matrix that is not normalised, is kept.
 ExpansionCoefficients expand(const ScatteringMatrix& matrix, double tolerance);
 
 // F at a cosine of the scattering angle.

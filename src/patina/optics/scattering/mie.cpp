@@ -21,8 +21,8 @@ inline Complex times(Complex a, Complex b) {
     return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
 
-// First order of a downward recurrence whose error has died out at the turning point |z|: over 8 |z|^(1/3) orders the ratio
-// Ai/Bi of the Airy functions falls below 1e-18.
+// First order of a downward recurrence whose error has died out at the turning point |z|: over 8 |z|^(1/3) orders the
+// ratio Ai/Bi of the Airy functions falls below 1e-18.
 int downward_start(double magnitude, int order) {
     const int beyond_turning_point = static_cast<int>(magnitude + 8.0 * std::cbrt(magnitude));
     return std::max(order, beyond_turning_point) + 15;
@@ -110,11 +110,11 @@ void fill_multipoles(double x, Scalar m, int order, std::vector<Complex>& a, std
 }  // namespace
 
 int mie_order(double size_parameter) {
-    return static_cast<int>(size_parameter + 4.3 * std::cbrt(size_parameter) + 3.0);
+    return static_cast<int>(size_parameter + 4.5 * std::cbrt(size_parameter) + 5.0);
 }
 
 MieSphere::MieSphere(double size_parameter, Complex relative_index) : size_parameter_(size_parameter) {
-    PATINA_EXPECT(size_parameter >= 1e-12 && relative_index.real() > 0.0 && relative_index.imag() >= 0.0);
+    PATINA_EXPECT(size_parameter >= 1e-20 && relative_index.real() > 0.0 && relative_index.imag() >= 0.0);
     PATINA_EXPECT(size_parameter * std::max(1.0, std::abs(relative_index)) <= 1e6);
     const int order = mie_order(size_parameter);
     if (relative_index.imag() == 0.0) {
@@ -128,7 +128,7 @@ MieSphere::MieSphere(double size_parameter, Complex relative_index) : size_param
 
 // The limit |m| -> infinity: a_n = psi_n'/xi_n', b_n = psi_n/xi_n.
 MieSphere MieSphere::perfect_conductor(double x) {
-    PATINA_EXPECT(x >= 1e-12 && x <= 1e6);
+    PATINA_EXPECT(x >= 1e-20 && x <= 1e6);
     MieSphere sphere;
     sphere.size_parameter_ = x;
     const int order = mie_order(x);

@@ -1,16 +1,17 @@
 #pragma once
 // Lorenz-Mie scattering by one homogeneous sphere.
 //
-// Bohren & Huffman (1983), chapter 4: time factor exp(-i w t), relative index m = n + i k with k >= 0 for absorption, amplitudes
-// E_s' = S1 E_s, E_p' = S2 E_p. Logarithmic derivatives and Riccati-Bessel psi come from downward recurrences started far enough
-// beyond their turning points (physics: Nussenzveig 1992, the Airy region has the width x^(1/3)), chi from the upward one, so that
-// the smallest spheres lose no digits and the largest are stable.
-// Limits: 1e-12 <= x, |m| x <= 1e6; |m - 1| much smaller than 1e-8 is lost to rounding.
+// Bohren & Huffman (1983), chapter 4: time factor exp(-i w t), relative index m = n + i k with k >= 0 for absorption,
+// amplitudes E_s' = S1 E_s, E_p' = S2 E_p. Logarithmic derivatives and Riccati-Bessel psi come from downward
+// recurrences started far enough beyond their turning points (physics: Nussenzveig 1992, the Airy region has the width
+// x^(1/3)), chi from the upward one, so that the smallest spheres lose no digits and the largest are stable. Limits:
+// 1e-20 <= x, |m| x <= 1e6; |m - 1| much smaller than 1e-8 is lost to rounding.
 
-#include <Eigen/Dense>
 #include <complex>
 #include <span>
 #include <vector>
+
+#include <Eigen/Dense>
 
 namespace patina::optics {
 

@@ -24,7 +24,9 @@ void accumulate(ExpansionCoefficients& sum, const ExpansionCoefficients& term, d
     }
 }
 
-ExpansionCoefficients isotropic() { return {{1, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}; }
+ExpansionCoefficients isotropic() {
+    return {{1, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+}
 
 }  // namespace
 
@@ -56,7 +58,8 @@ ScatteringProperties average(const ScatteringProperties& first, double first_wei
     p.absorption_um2 = both(first.absorption_um2, second.absorption_um2);
     p.mean_volume_um3 = both(first.mean_volume_um3, second.mean_volume_um3);
     // <r^3>/<r^2>, the second moment of each kind being <r^3>/r_eff.
-    const double area = both(first.mean_volume_um3 / first.effective_radius_um, second.mean_volume_um3 / second.effective_radius_um);
+    const double area =
+        both(first.mean_volume_um3 / first.effective_radius_um, second.mean_volume_um3 / second.effective_radius_um);
     p.effective_radius_um = p.mean_volume_um3 / area;
     p.radii = first.radii + second.radii;
     p.quadrature_error = std::max(first.quadrature_error, second.quadrature_error);

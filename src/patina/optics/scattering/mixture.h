@@ -9,7 +9,7 @@ namespace patina::optics {
 
 struct MixtureComponent {
     ScatteringProperties properties;
-    double number_density_per_um3; // >= 0
+    double number_density_per_um3;  // >= 0
 };
 
 // Bulk coefficients per length of path.
@@ -23,16 +23,18 @@ struct ScatteringMedium {
     double asymmetry() const { return expansion.asymmetry(); }
 };
 
-// Sums cross sections per volume and averages the expansion with the weight of scattering. Independent kinds: interference between
-// particles is inside the properties, not added here. Isotropic expansion if nothing scatters.
+// Sums cross sections per volume and averages the expansion with the weight of scattering. Independent kinds:
+// interference between particles is inside the properties, not added here. Isotropic expansion if nothing scatters.
 ScatteringMedium mix(std::span<const MixtureComponent> components);
 
-// Averages per particle with weights that add up to 1: cross sections, volumes, and the expansion by scattering cross section.
+// Averages per particle with weights that add up to 1: cross sections, volumes, and the expansion by scattering cross
+// section.
 ScatteringProperties average(const ScatteringProperties& first, double first_weight, const ScatteringProperties& second,
                              double second_weight);
 
-// Randomly oriented uniaxial particles (rutile, calcite) as 2/3 of ordinary and 1/3 of extraordinary index, each isotropic: exact for
-// particles small against the wavelength (Bohren & Huffman 1983, section 5.6), a usual approximation beyond.
+// Randomly oriented uniaxial particles (rutile, calcite) as 2/3 of ordinary and 1/3 of extraordinary index, each
+// isotropic: exact for particles small against the wavelength (Bohren & Huffman 1983, section 5.6), a usual
+// approximation beyond.
 inline ScatteringProperties average_birefringent(const ScatteringProperties& ordinary,
                                                  const ScatteringProperties& extraordinary) {
     return average(ordinary, 2.0 / 3.0, extraordinary, 1.0 / 3.0);

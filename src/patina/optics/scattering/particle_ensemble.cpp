@@ -1,9 +1,9 @@
 #include "patina/optics/scattering/particle_ensemble.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <fmt/format.h>
 
 #include "patina/core/constants.h"
 #include "patina/optics/scattering/expansion.h"
@@ -16,21 +16,25 @@ namespace {
 
 using Complex = std::complex<double>;
 
-void validate_problem(Complex particle_index, double host_index, double wavelength_nm, const ScatteringOptions& options) {
+void validate_problem(Complex particle_index, double host_index, double wavelength_nm,
+                      const ScatteringOptions& options) {
     const auto require = [](bool legal, const std::string& problem, const char* why, const char* suggestion) {
         if (!legal) throw input_error({}, problem, why, suggestion);
     };
     const double n = particle_index.real(), k = particle_index.imag();
-    require(std::isfinite(n) && n > 0.0 && n <= 100.0, fmt::format("the particle's refractive index has the real part {}", n),
-            "it lies above 0 and up to 100", "use a positive number");
+    require(std::isfinite(n) && n > 0.0 && n <= 100.0,
+            fmt::format("the particle's refractive index has the real part {}", n), "it lies above 0 and up to 100",
+            "use a positive number");
     require(std::isfinite(k) && k >= 0.0 && k <= 100.0, fmt::format("the particle's extinction coefficient k is {}", k),
             "k >= 0 absorbs; a negative one would amplify light", "use 0 or more");
     require(std::isfinite(host_index) && host_index >= 0.1 && host_index <= 100.0,
-            fmt::format("the host's refractive index is {}", host_index), "it lies between 0.1 and 100", "use 1.5 for a binder");
+            fmt::format("the host's refractive index is {}", host_index), "it lies between 0.1 and 100",
+            "use 1.5 for a binder");
     require(std::isfinite(wavelength_nm) && wavelength_nm >= 1.0 && wavelength_nm <= 1e7,
-            fmt::format("the wavelength is {} nm", wavelength_nm), "it lies between 1 nm and 1 cm", "use 380 to 780 for light");
-    require(options.tolerance >= 1e-12 && options.tolerance <= 0.1, fmt::format("the tolerance is {}", options.tolerance),
-            "it lies between 1e-12 and 0.1", "use 1e-5");
+            fmt::format("the wavelength is {} nm", wavelength_nm), "it lies between 1 nm and 1 cm",
+            "use 380 to 780 for light");
+    require(options.tolerance >= 1e-12 && options.tolerance <= 0.1,
+            fmt::format("the tolerance is {}", options.tolerance), "it lies between 1e-12 and 0.1", "use 1e-5");
     require(options.packing_fraction >= 0.0 && options.packing_fraction <= max_packing_fraction,
             fmt::format("the particles fill the fraction {} of the volume", options.packing_fraction),
             "spheres pack at random up to 0.64", "use 0 to 0.64");
@@ -60,10 +64,12 @@ struct SizeAverage {
     double error;
 };
 
-// Doubles the number of intervals until the average changes by less than the tolerance: the finer of two estimates is far better
-// than their difference where the rule converges exponentially, and about half as wrong where narrow resonances are still missed.
+// Doubles the number of intervals until the average changes by less than the tolerance: the finer of two estimates is
+// far better than their difference where the rule converges exponentially, and about half as wrong where narrow
+// resonances are still missed.
 SizeAverage average_over_sizes(Complex relative_index, double wavenumber, const SizeDistribution& distribution,
-                               const RadiusRange& range, const math::Quadrature& cosines, const ScatteringOptions& options) {
+                               const RadiusRange& range, const math::Quadrature& cosines,
+                               const ScatteringOptions& options) {
     const auto sums_of = [&](const RadiusRule& rule) {
         return sum_spheres(relative_index, wavenumber, rule.radii_um, rule.weights, cosines);
     };
@@ -82,7 +88,7 @@ SizeAverage average_over_sizes(Complex relative_index, double wavenumber, const 
         average.sums += sums_of(rule);
         average.radii += static_cast<int>(rule.radii_um.size());
         average.error = difference(coarse, average.sums, cosines);
-    } while (average.error > options.tolerance && 2 * average.radii <= options.max_radii);
+    } while (average.error > options.tolerance && 2 * average.radii - 1 <= options.max_radii);
     return average;
 }
 
@@ -101,9 +107,10 @@ ScatteringProperties scatter(Complex particle_index, double host_index, double w
     if (largest > 1e5)
         throw input_error({}, fmt::format("particles of {:.3g} um are too large for Lorenz-Mie theory", range.max_um),
                           "their circumference exceeds 1e5 wavelengths", "use a narrower or finer size distribution");
-    if (wavenumber * range.min_um < 1e-12)
+    if (wavenumber * range.min_um < 1e-20)
         throw input_error({}, fmt::format("particles of {:.3g} um are too small for their wavelength", range.min_um),
-                          "their circumference is below 1e-12 wavelengths", "use a narrower or coarser size distribution");
+                          "their circumference is below 1e-20 wavelengths",
+                          "use a narrower or coarser size distribution");
     const math::Quadrature cosines = math::gauss_legendre(matrix_nodes(wavenumber * range.max_um));
     const SizeAverage average = average_over_sizes(relative_index, wavenumber, distribution, range, cosines, options);
 

@@ -1,10 +1,10 @@
 #include "patina/optics/scattering/size_distribution.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
+
+#include <fmt/format.h>
 
 #include "patina/core/constants.h"
 #include "patina/core/contract.h"
@@ -24,26 +24,25 @@ double power_of(SizeWeighting weighting) {
 
 // ln of the density per ln r of the property, up to a constant; u = ln r. Smooth shapes only.
 double log_density(const SizeShape& shape, double u) {
-    return std::visit(
-        Overloaded{[&](const LogNormal& s) {
-                       const double t = (u - std::log(s.median_radius_um)) / std::log(s.sigma_g);
-                       return -0.5 * t * t;
-                   },
-                   [&](const Gamma& s) {
-                       const double v = s.effective_variance;
-                       return u * ((1.0 - 3.0 * v) / v + 1.0) - std::exp(u) / (s.effective_radius_um * v);
-                   },
-                   [&](const ModifiedGamma& s) {
-                       return u * (s.alpha + 1.0) -
-                              s.alpha / s.gamma * std::exp(s.gamma * (u - std::log(s.mode_radius_um)));
-                   },
-                   [&](const PowerLaw& s) { return u * (1.0 - s.exponent); },
-                   [&](const RosinRammler& s) {
-                       const double t = s.spread * (u - std::log(s.scale_radius_um));
-                       return t - std::exp(t);
-                   },
-                   [](const auto&) { return 0.0; }},
-        shape);
+    return std::visit(Overloaded{[&](const LogNormal& s) {
+                                     const double t = (u - std::log(s.median_radius_um)) / std::log(s.sigma_g);
+                                     return -0.5 * t * t;
+                                 },
+                                 [&](const Gamma& s) {
+                                     const double v = s.effective_variance;
+                                     return u * ((1.0 - 3.0 * v) / v + 1.0) - std::exp(u) / (s.effective_radius_um * v);
+                                 },
+                                 [&](const ModifiedGamma& s) {
+                                     return u * (s.alpha + 1.0) -
+                                            s.alpha / s.gamma * std::exp(s.gamma * (u - std::log(s.mode_radius_um)));
+                                 },
+                                 [&](const PowerLaw& s) { return u * (1.0 - s.exponent); },
+                                 [&](const RosinRammler& s) {
+                                     const double t = s.spread * (u - std::log(s.scale_radius_um));
+                                     return t - std::exp(t);
+                                 },
+                                 [](const auto&) { return 0.0; }},
+                      shape);
 }
 
 // A radius near the bulk of the property, where searches start.
@@ -60,11 +59,11 @@ double typical_radius_um(const SizeShape& shape) {
 
 // Slope of ln(density per ln r) at r -> 0; the integral down to zero is finite where it is positive.
 double slope_at_zero(const SizeShape& shape) {
-    return std::visit(Overloaded{[](const Gamma& s) { return (1.0 - 2.0 * s.effective_variance) / s.effective_variance; },
-                                 [](const ModifiedGamma& s) { return s.alpha + 1.0; },
-                                 [](const RosinRammler& s) { return s.spread; },
-                                 [](const auto&) { return 1e9; }},
-                      shape);
+    return std::visit(
+        Overloaded{[](const Gamma& s) { return (1.0 - 2.0 * s.effective_variance) / s.effective_variance; },
+                   [](const ModifiedGamma& s) { return s.alpha + 1.0; }, [](const RosinRammler& s) { return s.spread; },
+                   [](const auto&) { return 1e9; }},
+        shape);
 }
 
 double argmax_of_concave(const std::function<double(double)>& f, double start) {
@@ -104,8 +103,8 @@ double falls_by(const std::function<double(double)>& f, double drop, double star
     return outside;
 }
 
-// Stretches [0, 1] onto itself so that six derivatives vanish at both ends: the trapezoidal rule then converges like h^8 for any
-// smooth integrand. The incomplete beta function I_t(7, 7).
+// Stretches [0, 1] onto itself so that six derivatives vanish at both ends: the trapezoidal rule then converges like
+// h^8 for any smooth integrand. The incomplete beta function I_t(7, 7).
 struct Stretch {
     double value;
     double derivative;
@@ -125,7 +124,9 @@ void require(bool legal, const SourceLocation& where, std::string_view problem, 
     if (!legal) throw input_error(where, problem, why, suggestion);
 }
 
-bool positive(double value) { return std::isfinite(value) && value > 0.0; }
+bool positive(double value) {
+    return std::isfinite(value) && value > 0.0;
+}
 
 void require_radius(double value, std::string_view name, const SourceLocation& where) {
     require(std::isfinite(value) && value >= 1e-6 && value <= 1e4, where, fmt::format("{} is {} um", name, value),
@@ -145,11 +146,13 @@ void validate_histogram(const Histogram& s, const SourceLocation& where) {
     }
     double total = 0.0;
     for (double fraction : s.fractions) {
-        require(std::isfinite(fraction) && fraction >= 0.0, where, fmt::format("a fraction of the histogram is {}", fraction),
-                "fractions are not negative", "use 0 or more");
+        require(std::isfinite(fraction) && fraction >= 0.0, where,
+                fmt::format("a fraction of the histogram is {}", fraction), "fractions are not negative",
+                "use 0 or more");
         total += fraction;
     }
-    require(total > 0.0, where, "all fractions of the histogram are zero", "there are no particles", "give a positive one");
+    require(total > 0.0, where, "all fractions of the histogram are zero", "there are no particles",
+            "give a positive one");
 }
 
 // Appends the points of one interval of ln r with a density given by its logarithm.
@@ -180,7 +183,8 @@ struct Moments {
     double number, square, cube;
 };
 Moments moments(const SizeDistribution& distribution) {
-    // Every size is "large" (r^2) or "small" (r^6): a wavenumber beyond all radii makes r^2 rule, so widen by a stricter tolerance.
+    // Every size is "large" (r^2) or "small" (r^6): a wavenumber beyond all radii makes r^2 rule, so widen by a
+    // stricter tolerance.
     const RadiusRange range = relevant_range(distribution, 1.0 / typical_radius_um(distribution.shape), 1e-12);
     const RadiusRule rule = radius_rule(distribution, range, 512);
     Moments m{0.0, 0.0, 0.0};
@@ -197,44 +201,46 @@ Moments moments(const SizeDistribution& distribution) {
 
 void validate(const SizeDistribution& distribution, const SourceLocation& where) {
     std::visit(
-        Overloaded{
-            [&](const Monodisperse& s) { require_radius(s.radius_um, "the radius", where); },
-            [&](const LogNormal& s) {
-                require_radius(s.median_radius_um, "the median radius", where);
-                require(std::isfinite(s.sigma_g) && s.sigma_g > 1.0 && s.sigma_g <= 10.0, where,
-                        fmt::format("the geometric standard deviation is {}", s.sigma_g),
-                        "it is the ratio of two radii, above 1 and at most 10",
-                        s.sigma_g > 10.0 ? "use at most 10" : "use 1.3 for a paint grade, or monodisperse for one size");
-            },
-            [&](const Gamma& s) {
-                require_radius(s.effective_radius_um, "the effective radius", where);
-                require(s.effective_variance >= 1e-4 && s.effective_variance < 0.5, where,
-                        fmt::format("the effective variance is {}", s.effective_variance),
-                        "the gamma distribution exists from 0.0001 to below 0.5",
-                        s.effective_variance >= 0.5 ? "use at most 0.49" : "use at least 0.0001");
-            },
-            [&](const ModifiedGamma& s) {
-                require_radius(s.mode_radius_um, "the mode radius", where);
-                require(positive(s.alpha) && s.alpha <= 1000.0, where, fmt::format("alpha is {}", s.alpha),
-                        "a mode exists only for alpha above 0", "use a value above 0 and up to 1000");
-                require(positive(s.gamma) && s.gamma >= 0.05 && s.gamma <= 100.0, where, fmt::format("gamma is {}", s.gamma),
-                        "it lies between 0.05 and 100", s.gamma > 100.0 ? "use at most 100" : "use at least 0.05");
-            },
-            [&](const PowerLaw& s) {
-                require_radius(s.min_radius_um, "the smallest radius", where);
-                require_radius(s.max_radius_um, "the largest radius", where);
-                require(s.max_radius_um > s.min_radius_um, where, "the largest radius is not above the smallest",
-                        "the cut-offs enclose the particles", "exchange them, or use monodisperse");
-                require(std::isfinite(s.exponent) && std::abs(s.exponent) <= 20.0, where,
-                        fmt::format("the exponent is {}", s.exponent), "it lies between -20 and 20", "use 3 to 4 for ground powders");
-            },
-            [&](const RosinRammler& s) {
-                require_radius(s.scale_radius_um, "the scale radius", where);
-                require(std::isfinite(s.spread) && s.spread >= 0.5 && s.spread <= 100.0, where,
-                        fmt::format("the spread is {}", s.spread), "it lies between 0.5 and 100",
-                        s.spread > 100.0 ? "use at most 100" : "use at least 0.5");
-            },
-            [&](const Histogram& s) { validate_histogram(s, where); }},
+        Overloaded{[&](const Monodisperse& s) { require_radius(s.radius_um, "the radius", where); },
+                   [&](const LogNormal& s) {
+                       require_radius(s.median_radius_um, "the median radius", where);
+                       require(std::isfinite(s.sigma_g) && s.sigma_g > 1.0 && s.sigma_g <= 10.0, where,
+                               fmt::format("the geometric standard deviation is {}", s.sigma_g),
+                               "it is the ratio of two radii, above 1 and at most 10",
+                               s.sigma_g > 10.0 ? "use at most 10"
+                                                : "use 1.3 for a paint grade, or monodisperse for one size");
+                   },
+                   [&](const Gamma& s) {
+                       require_radius(s.effective_radius_um, "the effective radius", where);
+                       require(s.effective_variance >= 1e-4 && s.effective_variance < 0.5, where,
+                               fmt::format("the effective variance is {}", s.effective_variance),
+                               "the gamma distribution exists from 0.0001 to below 0.5",
+                               s.effective_variance >= 0.5 ? "use at most 0.49" : "use at least 0.0001");
+                   },
+                   [&](const ModifiedGamma& s) {
+                       require_radius(s.mode_radius_um, "the mode radius", where);
+                       require(positive(s.alpha) && s.alpha <= 1000.0, where, fmt::format("alpha is {}", s.alpha),
+                               "a mode exists only for alpha above 0", "use a value above 0 and up to 1000");
+                       require(positive(s.gamma) && s.gamma >= 0.05 && s.gamma <= 100.0, where,
+                               fmt::format("gamma is {}", s.gamma), "it lies between 0.05 and 100",
+                               s.gamma > 100.0 ? "use at most 100" : "use at least 0.05");
+                   },
+                   [&](const PowerLaw& s) {
+                       require_radius(s.min_radius_um, "the smallest radius", where);
+                       require_radius(s.max_radius_um, "the largest radius", where);
+                       require(s.max_radius_um > s.min_radius_um, where, "the largest radius is not above the smallest",
+                               "the cut-offs enclose the particles", "exchange them, or use monodisperse");
+                       require(std::isfinite(s.exponent) && std::abs(s.exponent) <= 20.0, where,
+                               fmt::format("the exponent is {}", s.exponent), "it lies between -20 and 20",
+                               "use 3 to 4 for ground powders");
+                   },
+                   [&](const RosinRammler& s) {
+                       require_radius(s.scale_radius_um, "the scale radius", where);
+                       require(std::isfinite(s.spread) && s.spread >= 0.5 && s.spread <= 100.0, where,
+                               fmt::format("the spread is {}", s.spread), "it lies between 0.5 and 100",
+                               s.spread > 100.0 ? "use at most 100" : "use at least 0.5");
+                   },
+                   [&](const Histogram& s) { validate_histogram(s, where); }},
         distribution.shape);
 }
 
@@ -251,9 +257,7 @@ RadiusRange relevant_range(const SizeDistribution& distribution, double wavenumb
     const auto number = [&](double u) { return log_density(shape, u) - power * u; };
 
     // Cut the small particles where they matter neither in number nor in absorption (r^3).
-    const auto absorption = [&](double u) {
-        return number(u) + 3.0 * u - std::log1p(wavenumber_per_um * std::exp(u));
-    };
+    const auto absorption = [&](double u) { return number(u) + 3.0 * u - std::log1p(wavenumber_per_um * std::exp(u)); };
     const double u_min = slope_at_zero(shape) > power + 0.05 ? falls_by(number, drop, start, -1.0)
                                                              : falls_by(absorption, drop, start, -1.0);
 
@@ -265,7 +269,8 @@ RadiusRange relevant_range(const SizeDistribution& distribution, double wavenumb
     return {std::exp(u_min), std::exp(falls_by(scattering, drop, start, 1.0))};
 }
 
-RadiusRule radius_rule(const SizeDistribution& distribution, const RadiusRange& range, int intervals, bool new_points_only) {
+RadiusRule radius_rule(const SizeDistribution& distribution, const RadiusRange& range, int intervals,
+                       bool new_points_only) {
     PATINA_EXPECT(intervals >= 2 && range.max_um >= range.min_um);
     const double power = power_of(distribution.weighting);
     if (const auto* s = std::get_if<Monodisperse>(&distribution.shape)) return {{s->radius_um}, {1.0}};

@@ -8,11 +8,12 @@ namespace patina::optics {
 
 namespace {
 
-// int_0^1 s^p sin(x s)/(x s) s^2 ds summed with the coefficients of s^0, s^1, s^3: the closed form cancels as x -> 0, its series not.
+// int_0^1 s^p sin(x s)/(x s) s^2 ds summed with the coefficients of s^0, s^1, s^3: the closed form cancels as x -> 0,
+// its series not.
 double direct_correlation(double alpha, double beta, double gamma, double x) {
     const double x2 = x * x;
     if (x < 2.0) {
-        double sum = 0.0, term = 1.0; // (-1)^k x^2k / (2k+1)!
+        double sum = 0.0, term = 1.0;  // (-1)^k x^2k / (2k+1)!
         for (int k = 0; k < 14; ++k) {
             sum += term * (alpha / (2 * k + 3) + beta / (2 * k + 4) + gamma / (2 * k + 6));
             term *= -x2 / ((2 * k + 2) * (2 * k + 3));
@@ -20,8 +21,9 @@ double direct_correlation(double alpha, double beta, double gamma, double x) {
         return sum;
     }
     const double sine = std::sin(x), cosine = std::cos(x);
-    const double g = alpha * (sine - x * cosine) / x2 + beta * (2 * x * sine + (2 - x2) * cosine - 2) / (x2 * x) +
-                     gamma * (-x2 * x2 * cosine + 4 * ((3 * x2 - 6) * cosine + (x2 * x - 6 * x) * sine + 6)) / (x2 * x2 * x);
+    const double g =
+        alpha * (sine - x * cosine) / x2 + beta * (2 * x * sine + (2 - x2) * cosine - 2) / (x2 * x) +
+        gamma * (-x2 * x2 * cosine + 4 * ((3 * x2 - 6) * cosine + (x2 * x - 6 * x) * sine + 6)) / (x2 * x2 * x);
     return g / x;
 }
 
