@@ -52,6 +52,7 @@ TEST(Lab, WhiteIsHundredAndInverseReturns) {
     const Vector3d white = white_point(illuminant_d65());
     EXPECT_TRUE(xyz_to_lab(white, white).isApprox(Vector3d(100, 0, 0), 1e-14));
     EXPECT_NEAR(xyz_to_lab(0.184187 * white, white)[0], 50.0, 1e-4);  // L* = 50 is Y = 18.4187 %
+    EXPECT_NEAR(xyz_to_lab(0.001 * white, white)[0], 0.9033, 1e-5);   // the straight part: 903.3 Y (CIE 15:2004)
     for (const Vector3d& lab : {Vector3d(50, 20, -30), Vector3d(3, 1, -2), Vector3d(95, -5, 90), Vector3d(0, 0, 0)})
         EXPECT_LT((xyz_to_lab(lab_to_xyz(lab, white), white) - lab).norm(), 1e-11);
 }

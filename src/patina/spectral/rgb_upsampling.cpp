@@ -35,17 +35,19 @@ double inverse_sigmoid(double value) {
     return (value - 0.5) / std::sqrt(value * (1.0 - value));
 }
 
-// What one wavelength of a reflectance contributes to linear sRGB under D65.
+// What one wavelength of a reflectance contributes to linear sRGB under D65. The channels are scaled so that the
+// perfect diffuser is exactly (1, 1, 1): the white of the standard is D65 rounded to four decimals, which would leave
+// colours beside white out of reach by 3e-4.
 std::array<Vector3d, samples> rgb_weights() {
     const Spectrum d65 = illuminant_d65();
     std::array<Vector3d, samples> weights;
-    double y = 0.0;
+    Vector3d white = Vector3d::Zero();
     for (int i = 0; i < samples; ++i) {
         const double wavelength_nm = first_nm + i * step_nm;
-        weights[i] = d65(wavelength_nm) * colour_matching(Observer::cie1931_2deg, wavelength_nm);
-        y += weights[i][1];
+        weights[i] = xyz_to_linear_srgb(d65(wavelength_nm) * colour_matching(Observer::cie1931_2deg, wavelength_nm));
+        white += weights[i];
     }
-    for (Vector3d& weight : weights) weight = xyz_to_linear_srgb(weight) / y;
+    for (Vector3d& weight : weights) weight = weight.cwiseQuotient(white);
     return weights;
 }
 
