@@ -16,10 +16,15 @@ namespace {
 
 using Complex = std::complex<double>;
 
-void validate_problem(Complex particle_index, double host_index, double wavelength_nm,
-                      const ScatteringOptions& options) {
-    const auto require = [](bool legal, const std::string& problem, const char* why, const char* suggestion) {
-        if (!legal) throw input_error({}, problem, why, suggestion);
+constexpr double max_size_parameter = 5000.0;
+
+// A few seconds of one processor.
+constexpr double max_operations = 4e10;
+
+void validate_problem(Complex particle_index, double host_index, double wavelength_nm, const ScatteringOptions& options,
+                      const SourceLocation& where) {
+    const auto require = [&](bool legal, const std::string& problem, const char* why, const char* suggestion) {
+        if (!legal) throw input_error(where, problem, why, suggestion);
     };
     const double n = particle_index.real(), k = particle_index.imag();
     require(std::isfinite(n) && n > 0.0 && n <= 100.0,
@@ -75,6 +80,8 @@ SizeAverage average_over_sizes(Complex relative_index, double wavenumber, const 
     };
     constexpr int first_intervals = 32;
     int intervals = first_intervals;
+    const double operations_per_radius = 4.0 * cosines.size() * cosines.size();
+    const double affordable = std::min<double>(options.max_radii, max_operations / operations_per_radius);
     RadiusRule rule = radius_rule(distribution, range, intervals);
     SizeAverage average{sums_of(rule), static_cast<int>(rule.radii_um.size()), 0.0};
     if (std::holds_alternative<Monodisperse>(distribution.shape)) return average;
@@ -88,27 +95,29 @@ SizeAverage average_over_sizes(Complex relative_index, double wavenumber, const 
         average.sums += sums_of(rule);
         average.radii += static_cast<int>(rule.radii_um.size());
         average.error = difference(coarse, average.sums, cosines);
-    } while (average.error > options.tolerance && 2 * average.radii - 1 <= options.max_radii);
+    } while (average.error > options.tolerance && 2 * average.radii - 1 <= affordable);
     return average;
 }
 
 }  // namespace
 
 ScatteringProperties scatter(Complex particle_index, double host_index, double wavelength_nm,
-                             const SizeDistribution& distribution, const ScatteringOptions& options) {
-    validate_problem(particle_index, host_index, wavelength_nm, options);
-    validate(distribution);
+                             const SizeDistribution& distribution, const ScatteringOptions& options,
+                             const SourceLocation& where) {
+    validate_problem(particle_index, host_index, wavelength_nm, options, where);
+    validate(distribution, where);
     const Complex relative_index = particle_index / host_index;
     const double wavenumber = 2.0 * pi * host_index / (1e-3 * wavelength_nm);
 
     // Find the sizes that matter, and the angles that the largest of them needs.
     const RadiusRange range = relevant_range(distribution, wavenumber, options.tolerance);
-    const double largest = wavenumber * range.max_um * std::max(1.0, std::abs(relative_index));
-    if (largest > 1e5)
-        throw input_error({}, fmt::format("particles of {:.3g} um are too large for Lorenz-Mie theory", range.max_um),
-                          "their circumference exceeds 1e5 wavelengths", "use a narrower or finer size distribution");
+    if (wavenumber * range.max_um > max_size_parameter)
+        throw input_error(where, fmt::format("the size distribution reaches to radii of {:.3g} um", range.max_um),
+                          fmt::format("Lorenz-Mie sums end at a circumference of {} wavelengths", max_size_parameter),
+                          fmt::format("use radii below {:.3g} um, a narrower distribution or a looser tolerance",
+                                      max_size_parameter / wavenumber));
     if (wavenumber * range.min_um < 1e-20)
-        throw input_error({}, fmt::format("particles of {:.3g} um are too small for their wavelength", range.min_um),
+        throw input_error(where, fmt::format("the size distribution reaches to radii of {:.3g} um", range.min_um),
                           "their circumference is below 1e-20 wavelengths",
                           "use a narrower or coarser size distribution");
     const math::Quadrature cosines = math::gauss_legendre(matrix_nodes(wavenumber * range.max_um));

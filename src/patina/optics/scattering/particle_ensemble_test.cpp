@@ -117,6 +117,54 @@ TEST(ParticleEnsemble, RefusesWhatIsNotPhysical) {
     EXPECT_THROW(scatter(1.6, 1.5, 550, d, {.packing_fraction = 0.8}), Error);
     EXPECT_THROW(scatter(1.6, 1.5, 550, {Monodisperse{1e4}}), Error);
     EXPECT_THROW(scatter(1.6, 1.5, 550, {Monodisperse{-1}}), Error);
+    try {
+        scatter({1.5, -0.1}, 1.5, 550, d, {}, {"paint.toml", 4, 2});
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        EXPECT_THAT(error.what(), testing::StartsWith("paint.toml:4:2"));
+    }
+}
+
+// Anywhere in the legal space the result is finite, conserves energy and is normalised, or the input is refused in
+// words.
+TEST(ParticleEnsemble, IsSoundForAnyLegalInput) {
+    std::uint64_t state = 42;
+    const auto uniform = [&](double low, double high) {
+        state = state * 6364136223846793005ull + 1442695040888963407ull;
+        return low + (high - low) * static_cast<double>(state >> 11) * 0x1p-53;
+    };
+    const auto log_uniform = [&](double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); };
+    int accepted = 0;
+    for (int i = 0; i < 300; ++i) {
+        const double r = log_uniform(1e-4, 2.0);
+        const SizeShape shapes[] = {Monodisperse{r},
+                                    LogNormal{r, log_uniform(1.0001, 2.5)},
+                                    Gamma{r, log_uniform(1e-4, 0.49)},
+                                    ModifiedGamma{log_uniform(0.01, 1000), log_uniform(0.2, 100), r},
+                                    PowerLaw{uniform(-20, 20), r, r * log_uniform(1.01, 100)},
+                                    RosinRammler{r, log_uniform(0.5, 100)},
+                                    Histogram{{r, r * 1.1, r * 3}, {uniform(0, 1), uniform(0, 1)}}};
+        const SizeDistribution d{shapes[i % 7], static_cast<SizeWeighting>(i / 7 % 3)};
+        const Complex m(uniform(0.1, 4.0), i % 2 ? log_uniform(1e-8, 8.0) : 0.0);
+        const double f = i % 5 == 0 ? uniform(0.0, 0.64) : 0.0;
+        try {
+            const ScatteringProperties p = scatter(m, uniform(1.0, 1.7), uniform(300, 1000), d,
+                                                   {.tolerance = 0.02, .packing_fraction = f, .max_radii = 129});
+            ++accepted;
+            EXPECT_TRUE(std::isfinite(p.extinction_um2) && std::isfinite(p.quadrature_error)) << i;
+            EXPECT_GT(p.scattering_um2, 0.0) << i;
+            EXPECT_GE(p.absorption_um2, 0.0) << i;
+            EXPECT_EQ(p.absorption_um2 == 0.0, m.imag() == 0.0) << i;
+            EXPECT_NEAR(p.extinction_um2, p.scattering_um2 + p.absorption_um2, 1e-14 * p.extinction_um2) << i;
+            EXPECT_GT(p.mean_volume_um3, 0.0) << i;
+            EXPECT_NEAR(p.expansion.alpha1[0], 1.0, 1e-12) << i;
+            EXPECT_LT(std::abs(p.asymmetry()), 1.0) << i;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::input) << i;
+        }
+    }
+    EXPECT_GT(accepted, 250);
 }
 
 TEST(Mixture, AddsCrossSectionsAndWeighsExpansions) {
