@@ -107,7 +107,7 @@ void HalfAngleTable::validate(const SourceLocation& where) const {
     require_axis(where, "phi_d", phi_d, -pi, pi);
     if (wavelengths_nm.empty()) throw input_error(where, "there is no wavelength");
     for (std::size_t k = 0; k < wavelengths_nm.size(); ++k)
-        if (!(wavelengths_nm[k] > 0) || (k > 0 && wavelengths_nm[k] < wavelengths_nm[k - 1]))
+        if (!(wavelengths_nm[k] > 0) || (k > 0 && wavelengths_nm[k] <= wavelengths_nm[k - 1]))
             throw input_error(where, fmt::format("the wavelengths do not ascend at {} nm", wavelengths_nm[k]));
     const std::size_t expected = 16 * theta_h.size() * theta_d.size() * phi_d.size() * wavelengths_nm.size();
     if (mueller.size() != expected)
@@ -163,7 +163,9 @@ std::vector<double> five_wavelengths(const MuellerTable& table) {
     PATINA_EXPECT(!table.wavelengths_nm.empty());
     const double first = table.wavelengths_nm.front(), last = table.wavelengths_nm.back();
     if (first <= 450 && last >= 650) return {450, 500, 550, 600, 650};
-    std::vector<double> values = equally_spaced(first, last, 5);
+    // A table of one wavelength is constant around it: five distinct numbers keep readers from dividing by zero.
+    const double middle = (first + last) / 2, reach = std::max(2.0, (last - first) / 2);
+    std::vector<double> values = equally_spaced(middle - reach, middle + reach, 5);
     for (double& value : values) value = std::round(value);
     return values;
 }

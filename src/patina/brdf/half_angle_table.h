@@ -39,7 +39,7 @@ class HalfAngleTable {
   public:
     std::vector<double> theta_h, theta_d;  // radians, ascending within 0 .. pi/2, at least 2 each
     std::vector<double> phi_d;             // radians, ascending within -pi .. pi, both ends stored, at least 2
-    std::vector<double> wavelengths_nm;    // ascending (repeated values allowed), at least 1
+    std::vector<double> wavelengths_nm;    // ascending, at least 1
     std::vector<float> mueller;            // [phi_d][theta_d][theta_h][wavelength][4][4], 1/sr, no cosine
 
     // Throws Error(input) at `where` unless axes ascend in their ranges and the array fits them. NaN marks what was not

@@ -136,6 +136,17 @@ TEST(HalfAngleTable, RetroreflectionHasTheLimitOfItsNeighbours) {
         EXPECT_LT((grid.evaluate_meridian(500, mu, mu, pi) - rayleigh(500, mu, mu, pi)).norm(), 2e-3) << mu;
 }
 
+TEST(HalfAngleTable, FiveWavelengthsAreDistinctAndWithinWideTables) {
+    MuellerTable table;
+    for (const auto& [range, expected] :
+         {std::pair<std::vector<double>, std::vector<double>>{{380, 780}, {450, 500, 550, 600, 650}},
+          {{500, 600}, {500, 525, 550, 575, 600}},
+          {{550}, {548, 549, 550, 551, 552}}}) {
+        table.wavelengths_nm = range;
+        EXPECT_EQ(five_wavelengths(table), expected);
+    }
+}
+
 TEST(HalfAngleTable, NanNeighboursGiveZeroAndM00IsNotNegative) {
     HalfAngleTable table{{0, 1.5}, {0, 1.5}, {-pi, pi}, {550}, std::vector<float>(8 * 16, -0.25f)};
     EXPECT_EQ(table.evaluate(550, {0.5, 0.5, 0.5})(0, 0), 0.0);

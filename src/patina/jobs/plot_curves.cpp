@@ -46,13 +46,20 @@ std::string title_or(const PlotRequest& request, const std::string& made) {
     return gnuplot_quoted(request.title.empty() ? made : request.title);
 }
 
-void set_curve_axes(GnuplotScript& script, const std::string& title) {
+// With `legend`, room for it is left below the axis.
+void set_curve_axes(GnuplotScript& script, const std::string& title, bool legend) {
     script.line("set border 3 lc rgb '#404040' lw 1.5")
         .line("set tics nomirror out scale 0.6 textcolor rgb '#202020'")
-        .line("set grid lc rgb '#dddddd' lw 1 dt 1")
-        .line("set key top right opaque box lc rgb '#dddddd' width 1 height 0.4 samplen 2.5 spacing 1.2")
-        .line("set lmargin 11; set rmargin 4; set bmargin 4.2; set tmargin 3.2")
+        .line("set grid lt 1 lc rgb '#d4d4d4' lw 1.2")
+        .line(legend ? "set key below center horizontal Left reverse samplen 2.5 spacing 1.3 width 2 height 0.6; set "
+                       "bmargin 6.6"
+                     : "unset key; set bmargin 4.2")
+        .line("set lmargin 10; set rmargin 4; set tmargin 3.2")
         .line(fmt::format("set title {} font ',18' offset 0,0.3", title));
+}
+
+bool has_labels(std::span<const PlottedTable> tables) {
+    return std::ranges::any_of(tables, [](const PlottedTable& plotted) { return !plotted.label.empty(); });
 }
 
 std::string key_title(const PlottedTable& plotted) {
@@ -79,7 +86,8 @@ Figure dolp_figure(std::span<const PlottedTable> tables, const PlotRequest& requ
     const double step = nice_step(std::max(largest * 1.15, 0.01), 6), top = std::ceil(largest * 1.15 / step) * step;
     set_curve_axes(script,
                    title_or(request, fmt::format("Polarization in the plane of incidence ({:g} nm, light at {:g}°)",
-                                                 request.wavelength_nm, request.theta_i_deg)));
+                                                 request.wavelength_nm, request.theta_i_deg)),
+                   has_labels(tables));
     script.line("set xrange [-90:90]; set xtics 30 format '%g°'; set mxtics 3")
         .line(fmt::format("set yrange [0:{:.6g}]; set ytics {:.6g}", std::clamp(top, step, 1.0), step))
         .line("set xlabel 'exit angle from the normal  (light side < 0 < mirror side)'")
@@ -148,17 +156,20 @@ Figure lobe_figure(std::span<const PlottedTable> tables, const PlotRequest& requ
     if (!(largest > 0)) largest = 1;
     const double step = nice_step(largest, 4), radius = std::ceil(largest / step * 1.0001) * step;
     script
-        .line(fmt::format("set title {} font ',18' offset 0,0.5",
+        .line(fmt::format("set label 100 {} at screen 0.5,0.95 center font ',18'",
                           title_or(request, fmt::format("BRDF in the plane of incidence ({:g} nm, light at {:g}°)",
                                                         request.wavelength_nm, request.theta_i_deg))))
-        .line("unset border; unset tics; set size ratio -1; set lmargin 2; set bmargin 1; set tmargin 4")
-        .line(fmt::format("set rmargin {}", single ? 14 : 2))
-        .line(fmt::format("set xrange [{0:.6g}:{1:.6g}]; set yrange [{2:.6g}:{3:.6g}]", -1.18 * radius, 1.18 * radius,
-                          -0.2 * radius, 1.16 * radius))
-        .line("set key at graph 0.99, graph 0.99 right top opaque box lc rgb '#dddddd' width 1 height 0.4");
+        .line("unset border; unset tics; set size ratio -1; set lmargin at screen 0.02; set bmargin at screen 0.02")
+        .line(fmt::format("set tmargin at screen 0.91; set rmargin at screen {}", single ? 0.87 : 0.98))
+        .line(fmt::format("set xrange [{0:.6g}:{1:.6g}]; set yrange [{2:.6g}:{3:.6g}]", -1.12 * radius, 1.12 * radius,
+                          -0.17 * radius, 1.14 * radius));
+    if (single && tables[0].label.empty())
+        script.line("unset key");
+    else
+        script.line("set key at screen 0.985, screen 0.9 right top Left reverse samplen 2 spacing 1.3");
     draw_polar_grid(script, radius, step);
-    script.line(
-        fmt::format("set label 'f₀₀ [1/sr]' at 0,{:.6g} center font ',14' textcolor rgb '#404040'", -0.13 * radius));
+    script.line(fmt::format("set label 'BRDF f₀₀ [1/sr]' at 0,{:.6g} center font ',14' textcolor rgb '#404040'",
+                            -0.13 * radius));
 
     // The beam comes in from the left; the mirror direction is dashed.
     const double x = std::sin(radians(request.theta_i_deg)), y = std::cos(radians(request.theta_i_deg));
@@ -172,8 +183,8 @@ Figure lobe_figure(std::span<const PlottedTable> tables, const PlotRequest& requ
         const double top = std::clamp(nice_step(largest_dolp, 1), 0.01, 1.0), color_step = nice_step(top, 5);
         script.line(sequential_palette)
             .line(fmt::format("set cbrange [0:{:.6g}]; set cbtics {:.6g} scale 0.5", top, color_step))
-            .line("set cblabel 'degree of linear polarization' offset 1.2,0")
-            .line("set colorbox user origin screen 0.885,0.14 size screen 0.022,0.66 noborder");
+            .line("set cblabel 'degree of linear polarization' offset 0.5,0")
+            .line("set colorbox user origin screen 0.875,0.16 size screen 0.02,0.66 noborder");
     }
     script.line(curves);
     return figure;
@@ -203,8 +214,10 @@ Figure spectrum_figure(std::span<const PlottedTable> tables, const PlotRequest& 
                               single ? "title 'body'" : key_title(tables[t]));
         if (single) curves += ", $d0 using 1:3 with lines lw 2 dt 2 lc rgb '#606060' title 'body + specular'";
     }
-    set_curve_axes(script, title_or(request, fmt::format("Directional-hemispherical reflectance ({}light at {:g}°)",
-                                                         tables.size() == 1 ? "" : "body, ", request.theta_i_deg)));
+    set_curve_axes(script,
+                   title_or(request, fmt::format("Directional-hemispherical reflectance ({}light at {:g}°)",
+                                                 tables.size() == 1 ? "" : "body, ", request.theta_i_deg)),
+                   tables.size() == 1 || has_labels(tables));
     if (longest - shortest < 20) {
         shortest -= 10;
         longest += 10;
@@ -242,8 +255,10 @@ Figure albedo_figure(std::span<const PlottedTable> tables, const PlotRequest& re
             curves += fmt::format("{}$d{} using 1:2 with lines lw 3 lc rgb '{}' {}", t ? ", " : "plot ", t,
                                   color_of(tables[t], t), key_title(tables[t]));
     }
-    set_curve_axes(script, title_or(request, fmt::format("Directional-hemispherical reflectance ({}{:g} nm)",
-                                                         tables.size() == 1 ? "" : "body, ", request.wavelength_nm)));
+    set_curve_axes(script,
+                   title_or(request, fmt::format("Directional-hemispherical reflectance ({}{:g} nm)",
+                                                 tables.size() == 1 ? "" : "body, ", request.wavelength_nm)),
+                   tables.size() == 1 || has_labels(tables));
     const double step = nice_step(std::max(largest * 1.25, 1e-6), 6);
     script.line("set xrange [0:90]; set xtics 15 format '%g°'")
         .line(fmt::format("set yrange [0:{:.6g}]; set ytics {:.6g}", std::ceil(largest * 1.25 / step + 1e-9) * step,

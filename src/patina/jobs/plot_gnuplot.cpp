@@ -42,15 +42,16 @@ class ScratchFolder {
     fs::path path_;
 };
 
-std::string terminal(const std::string& extension, const FigureSize& size) {
+// The terminal, and `smoothing`, the finer steps a bitmap may give a coloured surface; in a vector figure every step is
+// a polygon more to store.
+std::string preamble(const std::string& extension, const FigureSize& size) {
+    const bool vector = extension == ".svg";
     // Vector figures are read in browsers, which know generic families; bitmaps take the font that comes with
     // fontconfig.
-    if (extension == ".svg")
-        return fmt::format(
-            "set terminal svg noenhanced size {},{} font 'DejaVu Sans,Verdana,sans-serif,{}' background 'white'",
-            size.width_px, size.height_px, size.font_size_pt);
-    return fmt::format("set terminal pngcairo noenhanced size {},{} font 'DejaVu Sans,{}' background 'white'",
-                       size.width_px, size.height_px, size.font_size_pt);
+    return fmt::format(
+        "set encoding utf8\nset terminal {} noenhanced size {},{} font '{},{}' background 'white'\nsmoothing = {}\n",
+        vector ? "svg" : "pngcairo", size.width_px, size.height_px,
+        vector ? "DejaVu Sans,Verdana,sans-serif" : "DejaVu Sans", size.font_size_pt, vector ? 1 : 2);
 }
 
 // Runs gnuplot in the folder on its file figure.gp; what it says goes to messages.txt. Returns the exit status.
@@ -112,8 +113,8 @@ void draw_with_gnuplot(const GnuplotScript& script, const FigureSize& size, cons
     // Gnuplot sees only names of our own; the figure is then moved to the user's.
     const ScratchFolder folder;
     const std::string figure = "figure" + extension;
-    write_text_file(folder.path() / "figure.gp", fmt::format("set encoding utf8\n{}\nset output '{}'\n{}unset output\n",
-                                                             terminal(extension, size), figure, script.text()));
+    write_text_file(folder.path() / "figure.gp", fmt::format("{}set output '{}'\n{}unset output\n",
+                                                             preamble(extension, size), figure, script.text()));
     const int status = run_gnuplot(folder.path());
     std::error_code ignored;
     if (status != 0 || !fs::exists(folder.path() / figure, ignored))

@@ -29,7 +29,8 @@ Hemisphere hemisphere(const brdf::MuellerTable& table, const PlotRequest& reques
     std::vector<double> mu_o, phi;
     const int rings = static_cast<int>(std::lround(largest_exit_angle_deg / step_deg));
     for (int k = 0; k <= rings; ++k) result.theta_deg.push_back(largest_exit_angle_deg * k / rings);
-    for (double angle = 0; angle <= 360; angle += 2 * step_deg) result.phi_deg.push_back(angle);
+    const int sectors = static_cast<int>(std::lround(360 / (2 * step_deg)));
+    for (int k = 0; k <= sectors; ++k) result.phi_deg.push_back(360.0 * k / sectors);
     for (double angle : result.theta_deg) mu_o.push_back(std::cos(radians(angle)));
     for (double angle : result.phi_deg) phi.push_back(radians(angle));
     const double mu_i[] = {std::cos(radians(request.theta_i_deg))};
@@ -60,11 +61,12 @@ double largest_of(const Hemisphere& sphere, const std::function<double(const Mue
 
 void set_disc_axes(GnuplotScript& script) {
     const double rim = largest_exit_angle_deg;
-    script.line("set pm3d map corners2color mean; unset border; unset tics; unset key; set size ratio -1")
+    script.line("set pm3d map interpolate smoothing,smoothing corners2color mean")
+        .line("unset border; unset tics; unset key; set size ratio -1")
         .line(fmt::format("set xrange [{0:g}:{1:g}]; set yrange [{0:g}:{1:g}]", -1.06 * rim, 1.06 * rim))
         // Rings at 30 and 60 degrees and the rim.
-        .line("set object 30 circle at 0,0 size first 30 fs empty border lc rgb '#b0ffffff' lw 1 front")
-        .line("set object 60 circle at 0,0 size first 60 fs empty border lc rgb '#b0ffffff' lw 1 front")
+        .line("set object 30 circle at 0,0 size first 30 fs empty border lc rgb '#60808080' lw 1 front")
+        .line("set object 60 circle at 0,0 size first 60 fs empty border lc rgb '#60808080' lw 1 front")
         .line(fmt::format("set object 90 circle at 0,0 size first {:g} fs empty border lc rgb '#404040' lw 1.5 front",
                           rim));
 }
@@ -86,11 +88,11 @@ std::string subtitle(const PlotRequest& request) {
         request.wavelength_nm, request.theta_i_deg, largest_exit_angle_deg);
 }
 
-void title_page(GnuplotScript& script, const PlotRequest& request, const std::string& made, double height) {
+void title_page(GnuplotScript& script, const PlotRequest& request, const std::string& made, double height, double gap) {
     const std::string title = request.title.empty() ? made : request.title;
     script.line(fmt::format("set label 100 {} at screen 0.5,{:g} center font ',20'", gnuplot_quoted(title), height))
         .line(fmt::format("set label 101 '{}' at screen 0.5,{:g} center font ',13' textcolor rgb '#505050'",
-                          subtitle(request), height - 0.045));
+                          subtitle(request), height - gap));
 }
 
 double dolp(const Mueller& mueller) {
@@ -118,10 +120,10 @@ Figure polar_figure(const brdf::MuellerTable& table, const PlotRequest& request)
                 left, left + 0.385))
             .line(fmt::format("set colorbox user origin screen {:g},0.12 size screen 0.014,0.64 noborder", left + 0.39))
             .line(fmt::format("set cbrange [0:{:.6g}]; set cbtics {:.6g} scale 0.5", top, nice_step(top, 6)))
-            .line(fmt::format("set cblabel '{}' offset 1.2,0", label))
+            .line(fmt::format("set cblabel '{}' offset -0.3,0", label))
             .line(fmt::format("splot ${} using 1:2:3 with pm3d", data));
     };
-    title_page(script, request, "Reflection over the exit hemisphere, unpolarized light", 0.95);
+    title_page(script, request, "Reflection over the exit hemisphere, unpolarized light", 0.95, 0.045);
     mark_light(script, request.theta_i_deg, 1.0);
     panel("f", "f₀₀ [1/sr]", 0.02, largest > 0 ? largest : 1.0);
     script.line("unset label 100; unset label 101");
@@ -130,12 +132,32 @@ Figure polar_figure(const brdf::MuellerTable& table, const PlotRequest& request)
     return figure;
 }
 
+// The direction of vibration of E, seen from above, as short lines as long as the light is polarized: x, y, dx, dy.
+void write_vibrations(GnuplotScript& script, const Hemisphere& sphere, double polarized) {
+    script.begin_data("v");
+    for (std::size_t t = 1; t + 1 < sphere.theta_deg.size(); ++t)
+        for (std::size_t p = 0; p + 1 < sphere.phi_deg.size(); ++p) {
+            const double phi = radians(sphere.phi_deg[p]), r = sphere.theta_deg[t];
+            const optics::Stokes stokes = sphere.at(t, p).col(0);
+            // p points to the normal in the picture's plane, s along rising azimuth.
+            const double angle = 0.5 * std::atan2(stokes[2], stokes[1]),
+                         length = 7.0 * dolp(sphere.at(t, p)) / polarized;
+            const double inward = length * std::cos(angle), around = length * std::sin(angle);
+            const double dx = -inward * std::cos(phi) - around * std::sin(phi);
+            const double dy = -inward * std::sin(phi) + around * std::cos(phi);
+            script.line(fmt::format("{:.5g} {:.5g} {:.5g} {:.5g}", r * std::cos(phi) - dx / 2,
+                                    r * std::sin(phi) - dy / 2, dx, dy));
+        }
+    script.end_data();
+}
+
 Figure aolp_figure(const brdf::MuellerTable& table, const PlotRequest& request) {
     Figure figure;
     figure.size = {1000, 860, 16};
     GnuplotScript& script = figure.script;
-    const Hemisphere sphere = hemisphere(table, request, 2.5);
+    const Hemisphere sphere = hemisphere(table, request, 1.5);
     const double polarized = std::max(largest_of(sphere, dolp), 1e-12);
+    write_vibrations(script, hemisphere(table, request, 10.6), polarized);
 
     // Hue: angle of E from the meridian plane, turning towards s. Unpolarized directions fade to white.
     script.begin_data("a");
@@ -154,18 +176,21 @@ Figure aolp_figure(const brdf::MuellerTable& table, const PlotRequest& request) 
     script.line("color(a, s) = hsv2rgb(a / 180.0, 0.85 * s, 0.95)");
     set_disc_axes(script);
     script.line("set multiplot").line("set palette model HSV functions gray, 0.85, 0.95").line("set cbrange [0:180]");
-    title_page(script, request, "Angle of linear polarization, unpolarized light", 0.955);
+    title_page(script, request, "Angle of linear polarization, unpolarized light; lines: vibration of E", 0.955, 0.042);
     mark_light(script, request.theta_i_deg, 1.0);
     script
         .line(
             "set lmargin at screen 0.04; set rmargin at screen 0.8; set bmargin at screen 0.04; set tmargin at screen "
             "0.87")
-        .line("set pm3d corners2color c1")
+        .line("set pm3d interpolate 1,1 corners2color c1")
         .line("unset colorbox")
-        .line("splot $a using 1:2:(0):(color($3, $4)) with pm3d lc rgb variable")
+        .line(
+            "splot $a using 1:2:(0):(color($3, $4)) with pm3d lc rgb variable, $v using 1:2:(0):3:4:(0) with vectors "
+            "nohead lw 2.2 "
+            "lc rgb '#202020'")
         // A second, empty plot draws the scale of hues.
         .line("unset label; unset object; set colorbox user origin screen 0.84,0.14 size screen 0.024,0.6 noborder")
-        .line("set cbtics 30 format '%g°' scale 0.5; set cblabel 'angle from the meridian plane' offset 1.5,0")
+        .line("set cbtics 30 format '%g°' scale 0.5; set cblabel 'angle from the meridian plane' offset 0.5,0")
         .line("splot [0:1][0:1] NaN with pm3d lc palette")
         .line("unset multiplot");
     return figure;
@@ -175,7 +200,7 @@ Figure mueller_figure(const brdf::MuellerTable& table, const PlotRequest& reques
     Figure figure;
     figure.size = {1300, 1330, 16};
     GnuplotScript& script = figure.script;
-    const Hemisphere sphere = hemisphere(table, request, 4.25);
+    const Hemisphere sphere = hemisphere(table, request, 3.75);
     double largest = 0;
     for (const Mueller& mueller : sphere.values.values)
         if (mueller(0, 0) > 0)
@@ -188,7 +213,7 @@ Figure mueller_figure(const brdf::MuellerTable& table, const PlotRequest& reques
 
     script.line("set multiplot");
     set_disc_axes(script);
-    title_page(script, request, "Mueller BRDF over the exit hemisphere", 0.972);
+    title_page(script, request, "Mueller BRDF over the exit hemisphere", 0.975, 0.028);
     mark_light(script, request.theta_i_deg, 0.6);
     const double width = 0.205, height = 0.2, left = 0.03, top = 0.895;
     for (int k = 0; k < 16; ++k) {
@@ -200,20 +225,21 @@ Figure mueller_figure(const brdf::MuellerTable& table, const PlotRequest& reques
                 "screen {:g}",
                 x, x + width * 0.97, y, y - height))
             .line(
-                fmt::format("set label 4 '{}' at graph 0.0,0.97 left font ',15'", fmt::format("m{}{}", k / 4, k % 4)));
+                fmt::format("set label 4 '{}' at graph 0.0,0.97 left font ',15'", fmt::format("f{}{}", k / 4, k % 4)));
         // The first panel has a scale of its own, the other fifteen share one.
         if (k == 0) {
-            const double f = std::max(largest_of(sphere, [](const Mueller& m) { return m(0, 0); }), 1e-300);
+            const double brightest = largest_of(sphere, [](const Mueller& m) { return m(0, 0); });
+            const double f = brightest > 0 ? brightest : 1.0;
             script.line(sequential_palette)
                 .line(fmt::format("set cbrange [0:{:.6g}]; set cbtics {:.6g} scale 0.5", f, nice_step(f, 4)))
-                .line("set cblabel 'm00 [1/sr]' offset 1.5,0")
+                .line("set cblabel 'f00 [1/sr]' offset 0.3,0")
                 .line(fmt::format("set colorbox user origin screen 0.875,{:g} size screen 0.018,{:g} noborder",
                                   top - height, height * 0.95));
         } else if (k == 1) {
             script.line(diverging_palette)
                 .line(fmt::format("set cbrange [{0:.6g}:{1:.6g}]; set cbtics {2:.6g} scale 0.5", -range, range,
                                   nice_step(2 * range, 8)))
-                .line("set cblabel 'element / m00' offset 1.5,0")
+                .line("set cblabel 'element / f00' offset 0.3,0")
                 .line("set colorbox user origin screen 0.875,0.06 size screen 0.018,0.5 noborder");
         } else if (k == 2) {
             script.line("unset colorbox");

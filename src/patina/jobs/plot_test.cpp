@@ -122,7 +122,7 @@ TEST_F(Plot, WhatCannotBeDrawnIsAnErrorOfTheRightKind) {
 TEST_F(Plot, DarkTablesAreDrawnToo) {
     const MuellerTable table = brdf::tabulate(brdf::lambertian_body(0.0), {.nodes = 4, .orders = 1});
     for (const std::string& name : plot_kind_names())
-        EXPECT_NO_THROW(plot(table, {.kind = plot_kind_named(name), .theta_i_deg = 0}, file("dark_" + name + ".png")))
+        EXPECT_NO_THROW(plot(table, {.kind = plot_kind_named(name), .theta_i_deg = 0}, file("dark_" + name + ".svg")))
             << name;
 }
 
