@@ -46,7 +46,8 @@ Handle new_memory_file() {
 }  // namespace
 
 Session::Session() : lock_(library_mutex()) {
-    // Every file is closed by its handle; a damaged one may leave objects that the library's clean-up at exit trips over.
+    // Every file is closed by its handle; a damaged one may leave objects that the library's clean-up at exit trips
+    // over.
     H5dont_atexit();
     H5Eget_auto2(H5E_DEFAULT, &handler_, &client_data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
