@@ -1,0 +1,44 @@
+#pragma once
+// What is in a picture, and how two pictures differ.
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "patina/core/stokes_image.h"
+
+namespace patina::io {
+
+// Of one Stokes component over all pixels and all bands compared; a - b.
+struct ComponentDifference {
+    double root_mean_square = 0;
+    double mean = 0;  // signed
+    double mean_absolute = 0;
+    double largest = 0;  // absolute
+    int largest_x = 0, largest_y = 0;
+};
+
+struct ImageDifference {
+    std::string bands;  // "spectral" when both have the same bins, else "rgb"
+    std::array<ComponentDifference, 4> stokes;
+    std::size_t not_finite = 0;  // values left out
+};
+
+// Throws Error(input) when the sizes differ.
+ImageDifference compare_images(const StokesImage& a, const StokesImage& b);
+
+// a - b, with the bins only when both have the same. Throws Error(input) when the sizes differ.
+StokesImage subtract_images(const StokesImage& a, const StokesImage& b);
+
+struct ImageSummary {
+    std::array<double, 4> mean{}, smallest{}, largest{};  // luminance of S0..S3
+    double mean_dolp = 0;                                 // weighted with S0: |(S1, S2)| over S0, each summed
+    double largest_dolp = 0;                              // over pixels of more than a thousandth of the mean luminance
+    std::size_t not_finite = 0;                           // pixels
+    std::size_t over_polarized = 0;  // pixels with a degree of polarization above 1 + 1e-3: noise or a mistake
+};
+
+ImageSummary summarize_image(const StokesImage& image);
+
+}  // namespace patina::io
