@@ -3,6 +3,8 @@ set(PATINA_SANITIZE "" CACHE STRING "Sanitizers, comma separated")
 
 add_library(patina_flags INTERFACE)
 target_compile_options(patina_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers)
+# GCC 12 warns in its own AVX-512 header (GCC bug 105593).
+target_compile_options(patina_flags INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized)
 if(PATINA_NATIVE)
   target_compile_options(patina_flags INTERFACE -march=native)
 endif()

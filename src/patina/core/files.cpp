@@ -14,6 +14,12 @@ namespace patina {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
+
+}  // namespace
+
 std::string read_text_file(const fs::path& path, std::uint64_t largest_bytes) {
     std::error_code status_error;
     const fs::file_status status = fs::status(path, status_error);
@@ -33,17 +39,21 @@ std::string read_text_file(const fs::path& path, std::uint64_t largest_bytes) {
     return text;
 }
 
-void write_file_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+void expect_writable(const fs::path& path) {
     std::error_code ignored;
-    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-    if (!fs::is_directory(folder, ignored))
-        throw Error(ErrorKind::runtime, fmt::format("{}: cannot be written (the folder \"{}\" does not exist)",
-                                                    path.string(), folder.string()));
-    if (fs::is_directory(path, ignored))
-        throw Error(ErrorKind::runtime, fmt::format("{}: cannot be written (it is a folder)", path.string()));
-    if (::access(folder.c_str(), W_OK) != 0)
-        throw Error(ErrorKind::runtime,
-                    fmt::format("{}: cannot be written ({})", path.string(), std::strerror(errno)));
+    const fs::path folder = folder_of(path);
+    const auto refuse = [&](const std::string& why) {
+        return Error(ErrorKind::runtime, fmt::format("{}: cannot be written ({})", path.string(), why));
+    };
+    if (!fs::is_directory(folder, ignored)) throw refuse(fmt::format("the folder \"{}\" does not exist", folder.string()));
+    if (fs::is_directory(path, ignored)) throw refuse("it is a folder");
+    if (::access(folder.c_str(), W_OK) != 0) throw refuse(std::strerror(errno));
+}
+
+void write_file_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+    expect_writable(path);
+    std::error_code ignored;
+    const fs::path folder = folder_of(path);
 
     // The extension stays last: libraries choose the format by it.
     const fs::path temporary =

@@ -1,0 +1,214 @@
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "patina/coating/recipe.h"
+#include "patina/coating/size_reader.h"
+#include "patina/coating/table_reader.h"
+#include "patina/core/files.h"
+#include "patina/optics/materials.h"
+#include "patina/spectral/spectrum_file.h"
+
+namespace patina::coating {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int most_layers = 1000;
+constexpr double densest_packing = 0.74;  // of equal spheres; more cannot be meant
+
+// Where the recipe's own files are looked for, and how it is named in messages.
+struct Context {
+    std::string file;
+    fs::path folder;
+};
+
+// A material given by name, by file, or as { n, k }; `key` must be present.
+optics::OpticalConstants read_material(const TableReader& reader, std::string_view key, const Context& context) {
+    const toml::node* node = reader.node(key);
+    if (!node) (void)reader.text(key);  // says that it is missing
+    if (node->is_string()) {
+        try {
+            return optics::material(*node->value<std::string>(), context.folder);
+        } catch (const Error& error) {
+            throw input_error(reader.where(key), reader.path_of(key), error.what());
+        }
+    }
+    if (!node->is_table()) reader.wrong_type(key, "material: a name, a file, or { n = 1.5, k = 0 }");
+
+    static constexpr std::array keys{
+        KeyInfo{"n", KeyType::number, "1", "", "real part of the refractive index", 1e-3, 100.0},
+        KeyInfo{"k", KeyType::number, "1", "0", "imaginary part of the refractive index, absorbing when positive", 0.0, 100.0}};
+    const TableReader index(*node->as_table(), keys, reader.path_of(key), context.file);
+    return optics::OpticalConstants::constant({index.number("n"), index.optional_number("k").value_or(0.0)});
+}
+
+Pigment read_pigment(const toml::table& table, const std::string& path, const Context& context) {
+    const TableReader reader(table, recipe_keys("[[layers.pigments]]"), path, context.file);
+    const toml::table* size = reader.table("size");
+    if (!size) throw input_error(reader.where(), fmt::format("{} is missing", reader.path_of("size")), "", "write size = { distribution = \"mono\", radius_um = 0.2 }");
+    return {read_material(reader, "material", context), reader.number("volume_fraction"),
+            read_size_distribution(TableReader(*size, recipe_keys("size"), reader.path_of("size"), context.file))};
+}
+
+Composition read_composition(const TableReader& reader, const Context& context) {
+    static constexpr std::string_view optical_keys[] = {"single_scattering_albedo", "expansion", "refractive_index"};
+    reader.forbid(optical_keys, "the layer is given by its composition; an optical layer starts with optical_thickness");
+
+    Composition composition{reader.number("thickness_um"), read_material(reader, "binder", context), {}, Packing::automatic};
+    const std::string packing = reader.choice("packing", {"auto", "percus-yevick", "independent"});
+    if (packing == "percus-yevick") composition.packing = Packing::percus_yevick;
+    if (packing == "independent") composition.packing = Packing::independent;
+
+    double total_fraction = 0.0;
+    const std::vector<const toml::table*> pigments = reader.tables("pigments");
+    for (size_t i = 0; i < pigments.size(); ++i) {
+        composition.pigments.push_back(read_pigment(*pigments[i], fmt::format("{}.{}", reader.path_of("pigments"), i), context));
+        total_fraction += composition.pigments.back().volume_fraction;
+    }
+    if (total_fraction > densest_packing)
+        throw input_error(reader.where("pigments"), fmt::format("the volume fractions add up to {:g}", total_fraction),
+                          fmt::format("spheres fill at most {}", densest_packing));
+    return composition;
+}
+
+OpticalLayer read_optical_layer(const TableReader& reader, bool is_lowest, const Context& context) {
+    static constexpr std::string_view composition_keys[] = {"thickness_um", "binder", "pigments", "packing"};
+    reader.forbid(composition_keys, "the layer is given in optical terms (it has optical_thickness)");
+
+    OpticalLayer layer{reader.number("optical_thickness"), reader.number("single_scattering_albedo"), {}, reader.optional_number("refractive_index").value_or(1.0)};
+    if (std::isinf(layer.optical_thickness) && !is_lowest)
+        throw input_error(reader.where("optical_thickness"), "an infinite layer hides what lies below it", "only the lowest layer may be infinite");
+    const std::string file = reader.text("expansion");
+    try {
+        layer.expansion = read_expansion_csv(context.folder / file);
+    } catch (const Error& error) {
+        throw fs::exists(context.folder / file) ? error : input_error(reader.where("expansion"), error.what());
+    }
+    return layer;
+}
+
+RecipeLayer read_layer(const toml::table& table, const std::string& path, bool is_lowest, const Context& context) {
+    const TableReader reader(table, recipe_keys("[[layers]]"), path, context.file);
+    const std::string name = reader.optional_text("name").value_or("");
+    if (reader.has("optical_thickness")) return {name, read_optical_layer(reader, is_lowest, context)};
+    return {name, read_composition(reader, context)};
+}
+
+spectral::Spectrum read_reflectance(const TableReader& reader, const Context& context) {
+    const toml::node* node = reader.node("reflectance");
+    if (!node || !node->is_string()) return spectral::Spectrum(reader.number("reflectance"));
+    const fs::path file = context.folder / *node->value<std::string>();
+    if (!fs::exists(file)) throw input_error(reader.where("reflectance"), fmt::format("{}: file not found", file.string()));
+    spectral::Spectrum spectrum = spectral::read_spectrum(file, spectral::Outside::hold);
+    for (const double value : spectrum.values())
+        if (!(value >= 0.0 && value <= 1.0))
+            throw input_error({file.string()}, fmt::format("a reflectance of {:g}", value), "reflectances lie between 0 and 1");
+    return spectrum;
+}
+
+std::variant<NoBase, LambertianBase, MetalBase> read_base(const toml::table* table, const Context& context) {
+    if (!table) return NoBase{};
+    const TableReader reader(*table, recipe_keys("[base]"), "base", context.file);
+    static constexpr std::string_view material_key[] = {"material"}, reflectance_key[] = {"reflectance"};
+    const std::string type = reader.choice("type", {"none", "lambertian", "metal"});
+    if (type != "metal") reader.forbid(material_key, "only a metal base has a material");
+    if (type != "lambertian") reader.forbid(reflectance_key, "only a lambertian base has a reflectance");
+    if (type == "metal") return MetalBase{read_material(reader, "material", context)};
+    if (type == "lambertian") return LambertianBase{read_reflectance(reader, context)};
+    return NoBase{};
+}
+
+bool read_interface(const toml::table* table, const Context& context) {
+    if (!table) return false;
+    const TableReader reader(*table, recipe_keys("[interface]"), "interface", context.file);
+    return reader.choice("type", {"smooth"}) == "smooth";
+}
+
+toml::table parse_toml(const std::string& text, const std::string& name) {
+    try {
+        return toml::parse(text, name);
+    } catch (const toml::parse_error& error) {
+        const toml::source_position at = error.source().begin;
+        throw input_error({name, static_cast<int>(at.line), static_cast<int>(at.column)}, "not TOML", error.description());
+    }
+}
+
+// One step of "layers.0.thickness_um": a key of a table or an index of an array.
+toml::node* step_into(toml::node& node, const std::string& step) {
+    if (toml::table* table = node.as_table()) return table->get(step);
+    toml::array* array = node.as_array();
+    const bool is_index = !step.empty() && step.size() < 6 && step.find_first_not_of("0123456789") == std::string::npos;
+    return array && is_index ? array->get(std::stoul(step)) : nullptr;
+}
+
+// Makes the assignment "path.to.key=value" in the tree; the value is TOML, or a string when it is not.
+void assign(toml::table& root, const std::string& setting) {
+    const size_t equals = setting.find('=');
+    if (equals == std::string::npos || equals == 0)
+        throw Error(ErrorKind::usage, fmt::format("--set {}: write key=value, as in layers.0.thickness_um=30", setting));
+    std::vector<std::string> steps;
+    std::istringstream path(setting.substr(0, equals));
+    for (std::string step; std::getline(path, step, '.');) steps.push_back(step);
+
+    toml::node* node = &root;
+    for (size_t i = 0; i + 1 < steps.size(); ++i) {
+        node = step_into(*node, steps[i]);
+        if (!node) throw Error(ErrorKind::usage, fmt::format("--set {}: the recipe has no \"{}\"", setting, steps[i]));
+    }
+    toml::table* parent = node->as_table();
+    if (!parent) throw Error(ErrorKind::usage, fmt::format("--set {}: \"{}\" is not a key of a table", setting, steps.back()));
+
+    const std::string value = setting.substr(equals + 1);
+    const auto insert = [&](const std::string& toml_value) {
+        toml::table parsed = toml::parse("value = " + toml_value, std::string("--set"));
+        parsed.get("value")->visit([&](auto&& concrete) { parent->insert_or_assign(steps.back(), concrete); });
+    };
+    try {
+        insert(value);
+    } catch (const toml::parse_error&) {
+        parent->insert_or_assign(steps.back(), value);
+    }
+}
+
+}  // namespace
+
+Recipe parse_recipe(const std::string& text, const std::string& name, const fs::path& folder, const std::vector<std::string>& settings) {
+    toml::table root = parse_toml(text, name);
+    for (const std::string& setting : settings) assign(root, setting);
+
+    const Context context{name, folder};
+    const TableReader reader(root, recipe_keys(""), "", name);
+    Recipe recipe;
+    recipe.path = name;
+    recipe.title = reader.optional_text("title").value_or("");
+    recipe.extrapolation = reader.choice("extrapolation", {"refuse", "hold"}) == "hold" ? optics::Extrapolation::hold : optics::Extrapolation::refuse;
+    recipe.has_interface = read_interface(reader.table("interface"), context);
+
+    const std::vector<const toml::table*> layers = reader.tables("layers");
+    if (layers.empty()) throw input_error(SourceLocation{name}, "a recipe needs at least one [[layers]]", "", "patina new paint NAME writes a commented starter");
+    if (layers.size() > most_layers) throw input_error(reader.where("layers"), fmt::format("{} layers", layers.size()), fmt::format("at most {} make sense", most_layers));
+    for (size_t i = 0; i < layers.size(); ++i)
+        recipe.layers.push_back(read_layer(*layers[i], fmt::format("layers.{}", i), i + 1 == layers.size(), context));
+    recipe.base = read_base(reader.table("base"), context);
+
+    std::ostringstream written;
+    written << root;
+    recipe.text = settings.empty() ? text : written.str();
+    return recipe;
+}
+
+Recipe read_recipe(const fs::path& path, const std::vector<std::string>& settings) {
+    constexpr std::uint64_t largest_recipe = std::uint64_t{16} << 20;
+    return parse_recipe(read_text_file(path, largest_recipe), path.string(), path.parent_path(), settings);
+}
+
+bool Recipe::is_wavelength_independent() const {
+    const bool optical = std::all_of(layers.begin(), layers.end(), [](const RecipeLayer& layer) { return std::holds_alternative<OpticalLayer>(layer.content); });
+    if (!optical || std::holds_alternative<MetalBase>(base)) return false;
+    const LambertianBase* lambertian = std::get_if<LambertianBase>(&base);
+    return !lambertian || lambertian->reflectance.is_uniform();
+}
+
+}  // namespace patina::coating

@@ -1,0 +1,33 @@
+#pragma once
+// A scene file in, a picture with polarization out: reads the files a scene names and solves the recipes it names.
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "patina/core/progress.h"
+#include "patina/core/stokes_image.h"
+#include "patina/render/render.h"
+
+namespace patina::jobs {
+
+struct RenderRequest {
+    std::filesystem::path scene;
+    render::RenderOptions options;
+    std::map<std::string, std::string> variables;  // values for the scene's <default> names
+    std::string command;                           // for provenance
+};
+
+// Files, materials and colour for the renderer. Recipes named by `paint` plugins are solved once each and kept.
+render::SceneResources scene_resources(const JobControl& control = {});
+
+StokesImage render_scene(const RenderRequest& request, const JobControl& control = {});
+
+// Throws Error(usage) unless the name ends in .exr, before anything long is started.
+void check_picture_output(const std::filesystem::path& path);
+
+// Writes the EXR and, if asked, a PNG of the same name; returns the names written.
+std::vector<std::string> write_picture(const std::filesystem::path& path, const StokesImage& image, bool stokes_rgb, bool png);
+
+}  // namespace patina::jobs

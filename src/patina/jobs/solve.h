@@ -1,0 +1,43 @@
+#pragma once
+// Recipe in, Mueller BRDF table out: every wavelength's problem is set up and solved.
+
+#include <string>
+#include <vector>
+
+#include "patina/brdf/mueller_table.h"
+#include "patina/coating/recipe.h"
+#include "patina/core/progress.h"
+#include "patina/rt/solver.h"
+
+namespace patina::jobs {
+
+struct SolveRequest {
+    std::vector<double> wavelengths_nm;  // ascending; empty = 380 to 780 nm every 5 nm, or one for a recipe without colour
+    int streams = 0;                     // quadrature nodes per hemisphere in air; 0 = chosen from the tolerance
+    double tolerance = 1e-3;             // relative, of the BRDF
+    std::string solver = "doubling";
+    std::string command;                 // for provenance
+};
+
+struct SolvePlan {
+    std::vector<double> wavelengths_nm;
+    int streams = 0;
+    int largest_expansion_order = 0;
+    std::vector<std::string> notes;  // sorted, each once
+};
+
+struct SolveResult {
+    brdf::MuellerTable table;
+    SolvePlan plan;
+    bool interrupted = false;  // the table holds the wavelengths that were done
+    bool converged = true;
+};
+
+// What solve() would do, without solving.
+SolvePlan plan_solve(const coating::Recipe& recipe, const SolveRequest& request);
+
+// Wavelengths run in parallel; the result does not depend on the number of threads.
+// Throws Error(input) for what the recipe or the solver cannot do, Error(interrupted) when stopped before anything is done.
+SolveResult solve(const coating::Recipe& recipe, const SolveRequest& request, const JobControl& control = {});
+
+}  // namespace patina::jobs
