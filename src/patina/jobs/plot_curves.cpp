@@ -123,6 +123,17 @@ void draw_polar_grid(GnuplotScript& script, double radius, double step) {
     }
 }
 
+// The beam comes in from the left; the mirror direction is dashed.
+void draw_beam(GnuplotScript& script, double theta_i_deg, double radius) {
+    const double x = std::sin(radians(theta_i_deg)), y = std::cos(radians(theta_i_deg));
+    script.line(
+        fmt::format("set arrow from {:.6g},{:.6g} to {:.6g},{:.6g} head filled size screen 0.016,18 lc rgb '#C08000' "
+                    "lw 3 front",
+                    -radius * x, radius * y, -0.72 * radius * x, 0.72 * radius * y));
+    script.line(fmt::format("set arrow from {:.6g},{:.6g} to {:.6g},{:.6g} nohead dt 2 lc rgb '#C08000' lw 2", 0.0, 0.0,
+                            radius * x, radius * y));
+}
+
 Figure lobe_figure(std::span<const PlottedTable> tables, const PlotRequest& request) {
     Figure figure;
     figure.size = {1100, 700, 16};
@@ -171,14 +182,7 @@ Figure lobe_figure(std::span<const PlottedTable> tables, const PlotRequest& requ
     script.line(fmt::format("set label 'BRDF f₀₀ [1/sr]' at 0,{:.6g} center font ',14' textcolor rgb '#404040'",
                             -0.13 * radius));
 
-    // The beam comes in from the left; the mirror direction is dashed.
-    const double x = std::sin(radians(request.theta_i_deg)), y = std::cos(radians(request.theta_i_deg));
-    script.line(
-        fmt::format("set arrow from {:.6g},{:.6g} to {:.6g},{:.6g} head filled size screen 0.016,18 lc rgb '#C08000' "
-                    "lw 3 front",
-                    -radius * x, radius * y, -0.72 * radius * x, 0.72 * radius * y));
-    script.line(fmt::format("set arrow from {:.6g},{:.6g} to {:.6g},{:.6g} nohead dt 2 lc rgb '#C08000' lw 2", 0.0, 0.0,
-                            radius * x, radius * y));
+    draw_beam(script, request.theta_i_deg, radius);
     if (single) {
         const double top = std::clamp(nice_step(largest_dolp, 1), 0.01, 1.0), color_step = nice_step(top, 5);
         script.line(sequential_palette)
