@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "patina/core/constants.h"
 #include "patina/core/contract.h"
 #include "patina/core/error.h"
 #include "patina/jobs/plot_style.h"
@@ -41,6 +42,21 @@ PlotKind plot_kind_named(std::string_view name) {
     if (found == names.end())
         throw Error(ErrorKind::usage, fmt::format("unknown kind of plot \"{}\"; {}", name, did_you_mean(name, names)));
     return static_cast<PlotKind>(found - names.begin());
+}
+
+void write_arcs(GnuplotScript& script, std::string_view name, std::span<const double> radii, double from_deg,
+                double to_deg) {
+    constexpr int steps = 180;
+    script.begin_data(name);
+    for (double radius : radii) {
+        for (int k = 0; k <= steps; ++k) {
+            const double angle = radians(from_deg + (to_deg - from_deg) * k / steps);
+            script.line(fmt::format("{:.6g} {:.6g}", radius * std::cos(angle), radius * std::sin(angle)));
+        }
+        // Two empty lines: to splot, arcs one line apart are a net.
+        script.line("\n");
+    }
+    script.end_data();
 }
 
 double nice_step(double largest, int intervals) {

@@ -55,7 +55,7 @@ void set_curve_axes(GnuplotScript& script, const std::string& title, bool legend
                        "bmargin 6.6"
                      : "unset key; set bmargin 4.2")
         .line("set lmargin 10; set rmargin 4; set tmargin 3.2")
-        .line(fmt::format("set title {} font ',18' offset 0,0.3", title));
+        .line(fmt::format("set title {} font size18 offset 0,0.3", title));
 }
 
 bool has_labels(std::span<const PlottedTable> tables) {
@@ -103,24 +103,34 @@ Figure dolp_figure(std::span<const PlottedTable> tables, const PlotRequest& requ
 
 // Arcs and rays of the lobe's polar grid, with their labels.
 void draw_polar_grid(GnuplotScript& script, double radius, double step) {
+    std::vector<double> radii;
     for (double arc = step; arc < radius * 1.001; arc += step) {
-        script.line(
-            fmt::format("set object circle at 0,0 size first {:.6g} arc [0:180] nowedge fs empty border lc rgb "
-                        "'#d0d0d0' lw 1 back",
-                        arc));
-        script.line(fmt::format("set label '{0:g}' at {0:.6g},{1:.6g} center font ',13' textcolor rgb '#606060'", arc,
+        radii.push_back(arc);
+        script.line(fmt::format("set label '{0:g}' at {0:.6g},{1:.6g} center font size13 textcolor rgb '#606060'", arc,
                                 -0.045 * radius));
-        script.line(fmt::format("set label '{0:g}' at {1:.6g},{2:.6g} center font ',13' textcolor rgb '#606060'", arc,
+        script.line(fmt::format("set label '{0:g}' at {1:.6g},{2:.6g} center font size13 textcolor rgb '#606060'", arc,
                                 -arc, -0.045 * radius));
     }
+    write_arcs(script, "arcs", radii, 0, 180);
     for (int angle = -90; angle <= 90; angle += 15) {
         const double x = std::sin(radians(angle)), y = std::cos(radians(angle));
         script.line(fmt::format("set arrow from 0,0 to {:.6g},{:.6g} nohead lc rgb '{}' lw 1 back", radius * x,
                                 radius * y, angle % 90 == 0 ? "#808080" : "#e2e2e2"));
         if (angle % 30 == 0 && std::abs(angle) < 90)
-            script.line(fmt::format("set label '{}°' at {:.6g},{:.6g} center font ',14' textcolor rgb '#404040'",
+            script.line(fmt::format("set label '{}°' at {:.6g},{:.6g} center font size14 textcolor rgb '#404040'",
                                     std::abs(angle), 1.06 * radius * x, 1.06 * radius * y));
     }
+}
+
+// The beam comes in from the left; the mirror direction is dashed.
+void draw_beam(GnuplotScript& script, double theta_i_deg, double radius) {
+    const double x = std::sin(radians(theta_i_deg)), y = std::cos(radians(theta_i_deg));
+    script.line(
+        fmt::format("set arrow from {:.6g},{:.6g} to {:.6g},{:.6g} head filled size screen 0.016,18 lc rgb '#C08000' "
+                    "lw 3 front",
+                    -radius * x, radius * y, -0.72 * radius * x, 0.72 * radius * y));
+    script.line(fmt::format("set arrow from {:.6g},{:.6g} to {:.6g},{:.6g} nohead dt 2 lc rgb '#C08000' lw 2", 0.0, 0.0,
+                            radius * x, radius * y));
 }
 
 Figure lobe_figure(std::span<const PlottedTable> tables, const PlotRequest& request) {
@@ -144,11 +154,11 @@ Figure lobe_figure(std::span<const PlottedTable> tables, const PlotRequest& requ
         const std::string color = color_of(tables[t], t);
         if (single)
             curves = fmt::format(
-                "plot $d{0} using 1:2 with filledcurves xy=0,0 fc rgb '#f1f1f1' notitle, $d{0} using 1:2:3 "
+                "$d{0} using 1:2 with filledcurves xy=0,0 fc rgb '#f1f1f1' notitle, $d{0} using 1:2:3 "
                 "with lines lw 7 lc palette {1}",
                 t, key_title(tables[t]));
         else
-            curves += fmt::format("{}$d{} using 1:2 with lines lw 3.5 lc rgb '{}' {}", t ? ", " : "plot ", t, color,
+            curves += fmt::format("{}$d{} using 1:2 with lines lw 3.5 lc rgb '{}' {}", t ? ", " : "", t, color,
                                   key_title(tables[t]));
     }
 
@@ -156,7 +166,7 @@ Figure lobe_figure(std::span<const PlottedTable> tables, const PlotRequest& requ
     if (!(largest > 0)) largest = 1;
     const double step = nice_step(largest, 4), radius = std::ceil(largest / step * 1.0001) * step;
     script
-        .line(fmt::format("set label 100 {} at screen 0.5,0.95 center font ',18'",
+        .line(fmt::format("set label 100 {} at screen 0.5,0.95 center font size18",
                           title_or(request, fmt::format("BRDF in the plane of incidence ({:g} nm, light at {:g}°)",
                                                         request.wavelength_nm, request.theta_i_deg))))
         .line("unset border; unset tics; set size ratio -1; set lmargin at screen 0.02; set bmargin at screen 0.02")
@@ -168,17 +178,10 @@ Figure lobe_figure(std::span<const PlottedTable> tables, const PlotRequest& requ
     else
         script.line("set key at screen 0.985, screen 0.9 right top Left reverse samplen 2 spacing 1.3");
     draw_polar_grid(script, radius, step);
-    script.line(fmt::format("set label 'BRDF f₀₀ [1/sr]' at 0,{:.6g} center font ',14' textcolor rgb '#404040'",
+    script.line(fmt::format("set label 'BRDF f₀₀ [1/sr]' at 0,{:.6g} center font size14 textcolor rgb '#404040'",
                             -0.13 * radius));
 
-    // The beam comes in from the left; the mirror direction is dashed.
-    const double x = std::sin(radians(request.theta_i_deg)), y = std::cos(radians(request.theta_i_deg));
-    script.line(
-        fmt::format("set arrow from {:.6g},{:.6g} to {:.6g},{:.6g} head filled size screen 0.016,18 lc rgb '#C08000' "
-                    "lw 3 front",
-                    -radius * x, radius * y, -0.72 * radius * x, 0.72 * radius * y));
-    script.line(fmt::format("set arrow from {:.6g},{:.6g} to {:.6g},{:.6g} nohead dt 2 lc rgb '#C08000' lw 2", 0.0, 0.0,
-                            radius * x, radius * y));
+    draw_beam(script, request.theta_i_deg, radius);
     if (single) {
         const double top = std::clamp(nice_step(largest_dolp, 1), 0.01, 1.0), color_step = nice_step(top, 5);
         script.line(sequential_palette)
@@ -186,7 +189,7 @@ Figure lobe_figure(std::span<const PlottedTable> tables, const PlotRequest& requ
             .line("set cblabel 'degree of linear polarization' offset 0.5,0")
             .line("set colorbox user origin screen 0.875,0.16 size screen 0.02,0.66 noborder");
     }
-    script.line(curves);
+    script.line("plot $arcs using 1:2 with lines lc rgb '#d0d0d0' lw 1 notitle, " + curves);
     return figure;
 }
 

@@ -42,16 +42,20 @@ class ScratchFolder {
     fs::path path_;
 };
 
-// The terminal, and `smoothing`, the finer steps a bitmap may give a coloured surface; in a vector figure every step is
-// a polygon more to store.
+// The terminal; size13 .. size20, fonts of so many points; `marker`, which makes points equally large; `smoothing`, the
+// finer steps a bitmap may give a coloured surface; in a vector figure every step is a polygon more to store.
 std::string preamble(const std::string& extension, const FigureSize& size) {
+    // The svg terminal takes sizes of letters in pixels. Vector figures are read in browsers, which know generic
+    // families; bitmaps take the font that comes with fontconfig.
     const bool vector = extension == ".svg";
-    // Vector figures are read in browsers, which know generic families; bitmaps take the font that comes with
-    // fontconfig.
-    return fmt::format(
-        "set encoding utf8\nset terminal {} noenhanced size {},{} font '{},{}' background 'white'\nsmoothing = {}\n",
+    const double scale = vector ? 4.0 / 3 : 1.0;
+    std::string text = fmt::format(
+        "set encoding utf8\nset terminal {} noenhanced size {},{} font '{},{:.4g}' background 'white'\nsmoothing = "
+        "{}\n",
         vector ? "svg" : "pngcairo", size.width_px, size.height_px,
-        vector ? "DejaVu Sans,Verdana,sans-serif" : "DejaVu Sans", size.font_size_pt, vector ? 1 : 2);
+        vector ? "DejaVu Sans,Verdana,sans-serif" : "DejaVu Sans", size.font_size_pt * scale, vector ? 1 : 2);
+    for (int points : {13, 14, 15, 18, 20}) text += fmt::format("size{} = ',{:.4g}'\n", points, points * scale);
+    return text + fmt::format("marker = {}\n", vector ? 0.5 : 1.0);
 }
 
 // Runs gnuplot in the folder on its file figure.gp; what it says goes to messages.txt. Returns the exit status.

@@ -63,23 +63,25 @@ void set_disc_axes(GnuplotScript& script) {
     const double rim = largest_exit_angle_deg;
     script.line("set pm3d map interpolate smoothing,smoothing corners2color mean")
         .line("unset border; unset tics; unset key; set size ratio -1")
-        .line(fmt::format("set xrange [{0:g}:{1:g}]; set yrange [{0:g}:{1:g}]", -1.06 * rim, 1.06 * rim))
-        // Rings at 30 and 60 degrees and the rim.
-        .line("set object 30 circle at 0,0 size first 30 fs empty border lc rgb '#60808080' lw 1 front")
-        .line("set object 60 circle at 0,0 size first 60 fs empty border lc rgb '#60808080' lw 1 front")
-        .line(fmt::format("set object 90 circle at 0,0 size first {:g} fs empty border lc rgb '#404040' lw 1.5 front",
-                          rim));
+        .line(fmt::format("set xrange [{0:g}:{1:g}]; set yrange [{0:g}:{1:g}]", -1.06 * rim, 1.06 * rim));
+    write_arcs(script, "rings", std::vector<double>{30, 60}, 0, 360);
+    write_arcs(script, "rim", std::vector<double>{rim}, 0, 360);
 }
+
+// Drawn after every map: rings at 30 and 60 degrees and the rim.
+constexpr const char* over_disc =
+    ", $rings using 1:2:(0) with lines lc rgb '#909090' lw 0.8, $rim using 1:2:(0) with lines lc rgb "
+    "'#404040' lw 1.5";
 
 // Where the light comes from (a sun: dot in a ring) and where a mirror would send it (a cross).
 void mark_light(GnuplotScript& script, double theta_i_deg, double scale) {
     script
-        .line(fmt::format("set label 1 '' at {:g},0 point pt 7 ps {:g} lc rgb '#E69F00' front", -theta_i_deg,
+        .line(fmt::format("set label 1 '' at {:g},0 point pt 7 ps {:g}*marker lc rgb '#E69F00' front", -theta_i_deg,
                           1.6 * scale))
-        .line(
-            fmt::format("set label 2 '' at {:g},0 point pt 6 ps {:g} lc rgb 'black' front", -theta_i_deg, 1.7 * scale))
-        .line(fmt::format("set label 3 '' at {:g},0 point pt 2 ps {:g} lw {:g} lc rgb 'black' front", theta_i_deg,
-                          1.4 * scale, 2 * scale));
+        .line(fmt::format("set label 2 '' at {:g},0 point pt 6 ps {:g}*marker lc rgb 'black' front", -theta_i_deg,
+                          1.7 * scale))
+        .line(fmt::format("set label 3 '' at {:g},0 point pt 2 ps {:g}*marker lw {:g} lc rgb 'black' front",
+                          theta_i_deg, 1.4 * scale, 2 * scale));
 }
 
 std::string subtitle(const PlotRequest& request) {
@@ -90,8 +92,8 @@ std::string subtitle(const PlotRequest& request) {
 
 void title_page(GnuplotScript& script, const PlotRequest& request, const std::string& made, double height, double gap) {
     const std::string title = request.title.empty() ? made : request.title;
-    script.line(fmt::format("set label 100 {} at screen 0.5,{:g} center font ',20'", gnuplot_quoted(title), height))
-        .line(fmt::format("set label 101 '{}' at screen 0.5,{:g} center font ',13' textcolor rgb '#505050'",
+    script.line(fmt::format("set label 100 {} at screen 0.5,{:g} center font size20", gnuplot_quoted(title), height))
+        .line(fmt::format("set label 101 '{}' at screen 0.5,{:g} center font size13 textcolor rgb '#505050'",
                           subtitle(request), height - gap));
 }
 
@@ -121,7 +123,7 @@ Figure polar_figure(const brdf::MuellerTable& table, const PlotRequest& request)
             .line(fmt::format("set colorbox user origin screen {:g},0.12 size screen 0.014,0.64 noborder", left + 0.39))
             .line(fmt::format("set cbrange [0:{:.6g}]; set cbtics {:.6g} scale 0.5", top, nice_step(top, 6)))
             .line(fmt::format("set cblabel '{}' offset -0.3,0", label))
-            .line(fmt::format("splot ${} using 1:2:3 with pm3d", data));
+            .line(fmt::format("splot ${} using 1:2:3 with pm3d{}", data, over_disc));
     };
     title_page(script, request, "Reflection over the exit hemisphere, unpolarized light", 0.95, 0.045);
     mark_light(script, request.theta_i_deg, 1.0);
@@ -184,12 +186,13 @@ Figure aolp_figure(const brdf::MuellerTable& table, const PlotRequest& request) 
             "0.87")
         .line("set pm3d interpolate 1,1 corners2color c1")
         .line("unset colorbox")
-        .line(
-            "splot $a using 1:2:(0):(color($3, $4)) with pm3d lc rgb variable, $v using 1:2:(0):3:4:(0) with vectors "
-            "nohead lw 2.2 "
-            "lc rgb '#202020'")
+        .line(std::string("splot $a using 1:2:(0):(color($3, $4)) with pm3d lc rgb variable, $v using 1:2:(0):3:4:(0) "
+                          "with vectors "
+                          "nohead lw 2.2 "
+                          "lc rgb '#202020'") +
+              over_disc)
         // A second, empty plot draws the scale of hues.
-        .line("unset label; unset object; set colorbox user origin screen 0.84,0.14 size screen 0.024,0.6 noborder")
+        .line("unset label; set colorbox user origin screen 0.84,0.14 size screen 0.024,0.6 noborder")
         .line("set cbtics 30 format '%g°' scale 0.5; set cblabel 'angle from the meridian plane' offset 0.5,0")
         .line("splot [0:1][0:1] NaN with pm3d lc palette")
         .line("unset multiplot");
@@ -225,7 +228,7 @@ Figure mueller_figure(const brdf::MuellerTable& table, const PlotRequest& reques
                 "screen {:g}",
                 x, x + width * 0.97, y, y - height))
             .line(
-                fmt::format("set label 4 '{}' at graph 0.0,0.97 left font ',15'", fmt::format("f{}{}", k / 4, k % 4)));
+                fmt::format("set label 4 '{}' at graph 0.0,0.97 left font size15", fmt::format("f{}{}", k / 4, k % 4)));
         // The first panel has a scale of its own, the other fifteen share one.
         if (k == 0) {
             const double brightest = largest_of(sphere, [](const Mueller& m) { return m(0, 0); });
@@ -244,7 +247,7 @@ Figure mueller_figure(const brdf::MuellerTable& table, const PlotRequest& reques
         } else if (k == 2) {
             script.line("unset colorbox");
         }
-        script.line(fmt::format("splot $m{}{} using 1:2:3 with pm3d", k / 4, k % 4));
+        script.line(fmt::format("splot $m{}{} using 1:2:3 with pm3d{}", k / 4, k % 4, over_disc));
     }
     script.line("unset multiplot");
     return figure;

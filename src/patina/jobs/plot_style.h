@@ -37,6 +37,10 @@ struct Figure {
 Figure curve_figure(std::span<const PlottedTable> tables, const PlotRequest& request);
 Figure map_figure(const brdf::MuellerTable& table, const PlotRequest& request);
 
+// A block of data with arcs about the origin as lines of points x, y: gnuplot's own circles get lost in SVG.
+void write_arcs(GnuplotScript& script, std::string_view name, std::span<const double> radii, double from_deg,
+                double to_deg);
+
 // "0.05, 0.1, 0.2, 0.5, ...": the smallest of 1, 2, 5 times a power of ten that makes at most `intervals` of [0,
 // largest].
 double nice_step(double largest, int intervals);
