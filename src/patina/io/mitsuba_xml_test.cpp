@@ -185,6 +185,14 @@ TEST(MitsubaXml, FileNamesBecomePathsOfExistingFiles) {
                 HasSubstr("scene.xml:2:50: there is no file \"gone.ply\""));
 }
 
+TEST(MitsubaXml, APropertyGivenAgainInAnIncludeIsRefused) {
+    const ScratchFolder folder;
+    folder.write("b.xml", "<scene version='3.0.0'><float name='x' value='2'/></scene>");
+    const auto path =
+        folder.write("a.xml", "<scene version='3.0.0'><float name='x' value='1'/><include filename='b.xml'/></scene>");
+    EXPECT_THROW(read_mitsuba_scene(path), Error);
+}
+
 TEST(MitsubaXml, CyclicIncludesAreRefused) {
     const ScratchFolder folder;
     folder.write("b.xml", "<scene version='3.0.0'><include filename='a.xml'/></scene>");
