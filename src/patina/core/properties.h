@@ -25,7 +25,6 @@ struct SpectrumSpec {
         sampled,   // values at wavelengths_nm (irregular, or regular expanded to its grid)
         rgb,       // linear sRGB in values[0..2]
         blackbody, // kelvin in values[0], scale in values[1]
-        d65,       // CIE illuminant D65, scale in values[0]
         file       // a .spd or .csv file, resolved by the reader into wavelengths_nm and values
     };
     Kind kind = Kind::uniform;

@@ -23,8 +23,8 @@ namespace {
 
 // A header can promise any size. Deflate packs at most 1032:1, the other methods more for constant images; beyond these
 // the file is broken or a trap.
-constexpr double largest_expansion = 65536;
-constexpr double largest_pixel_bytes = 16e9;
+constexpr double largest_expansion = 8192;
+constexpr double largest_pixel_bytes = 8e9;
 
 // Runs `work` and turns what OpenEXR throws into an Error of `kind`.
 template <class Work>

@@ -1,6 +1,10 @@
 #include <cmath>
 #include <random>
 
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfTiledOutputFile.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -119,6 +123,29 @@ TEST(StokesExr, ColoursOfTheMissingComponentsComeFromTheBins) {
     const StokesImage back = read_stokes_exr(folder / "a.exr");
     for (std::size_t i = 0; i < image.rgb.size(); ++i) EXPECT_NEAR(back.rgb[i], image.rgb[i], 1e-6);
     EXPECT_NEAR(back.stokes_rgb(0)[9], -1.205, 5e-4);
+}
+
+// Mitsuba's films and most environment maps are stored in 16 bits, in tiles now and then.
+TEST(StokesExr, HalfFloatTiledImagesAreRead) {
+    const ScratchFolder folder;
+    const std::vector<half> values{half(0.5f), half(-2.0f), half(65504.0f)};
+    Imf::Header header(3, 1);
+    Imf::FrameBuffer buffer;
+    for (const char* name :
+         {"S0.R", "S0.G", "S0.B", "S1.R", "S1.G", "S1.B", "S2.R", "S2.G", "S2.B", "S3.R", "S3.G", "S3.B"}) {
+        header.channels().insert(name, Imf::Channel(Imf::HALF));
+        buffer.insert(name, Imf::Slice(Imf::HALF, const_cast<char*>(reinterpret_cast<const char*>(values.data())),
+                                       sizeof(half), 3 * sizeof(half)));
+    }
+    header.setTileDescription(Imf::TileDescription(2, 2));
+    {
+        Imf::TiledOutputFile file((folder / "half.exr").c_str(), header);
+        file.setFrameBuffer(buffer);
+        file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
+    }
+    const StokesImage image = read_stokes_exr(folder / "half.exr");
+    for (std::size_t pixel = 0; pixel < 3; ++pixel)
+        for (int i = 0; i < 12; ++i) EXPECT_EQ(image.stokes_rgb(pixel)[i], float(values[pixel]));
 }
 
 TEST(StokesExr, TruncatedAndDamagedFilesAreRefused) {

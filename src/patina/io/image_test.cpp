@@ -245,6 +245,7 @@ TEST(ImageCompare, MetricsOfAKnownDifference) {
     const ImageDifference by_colour = compare_images(a, coloured);
     EXPECT_EQ(by_colour.bands, "rgb");
     EXPECT_EQ(by_colour.not_finite, 1u);
+    EXPECT_EQ(by_colour.stokes[2].largest, 0);
     EXPECT_EQ(by_colour.stokes[3].largest, 1);
     EXPECT_EQ(subtract_images(a, b).stokes(2, 0)[3], -1);
     EXPECT_THROW(compare_images(a, image_of({{1, 0, 0, 0}})), Error);

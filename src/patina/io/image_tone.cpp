@@ -49,18 +49,6 @@ Eigen::Matrix3d balance_matrix(const StokesImage& image, WhiteBalance balance) {
     return matrix;
 }
 
-double automatic_factor(const StokesImage& image, const Eigen::Matrix3d& balance) {
-    constexpr double percentile = 0.98, target = 0.8;
-    std::vector<double> values;
-    for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel)
-        if (const double y = luminance(balance * s0_of(image, pixel)); std::isfinite(y)) values.push_back(y);
-    if (values.empty()) return 1.0;
-    const auto place =
-        values.begin() + static_cast<std::ptrdiff_t>(percentile * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), place, values.end());
-    return *place > 0 ? target / *place : 1.0;
-}
-
 // Draws the colour to the grey of the same luminance until it lies in the unit cube.
 Eigen::Vector3d into_gamut(const Eigen::Vector3d& rgb, double grey) {
     double share = 1.0;
@@ -75,6 +63,19 @@ Eigen::Vector3d into_gamut(const Eigen::Vector3d& rgb, double grey) {
 
 }  // namespace
 
+double automatic_exposure_ev(const StokesImage& image, WhiteBalance white_balance) {
+    constexpr double percentile = 0.98, target = 0.8;
+    const Eigen::Matrix3d balance = balance_matrix(image, white_balance);
+    std::vector<double> values;
+    for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel)
+        if (const double y = luminance(balance * s0_of(image, pixel)); std::isfinite(y)) values.push_back(y);
+    if (values.empty()) return 0.0;
+    const auto place =
+        values.begin() + static_cast<std::ptrdiff_t>(percentile * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), place, values.end());
+    return *place > 0 ? std::log2(target / *place) : 0.0;
+}
+
 double roll_off(double y) {
     if (y <= shoulder) return y;
     return 1 - (1 - shoulder) * std::exp(-(y - shoulder) / (1 - shoulder));
@@ -83,8 +84,8 @@ double roll_off(double y) {
 Bitmap tone_map(const StokesImage& image, const ToneOptions& options) {
     PATINA_EXPECT(image.rgb.size() == image.pixel_count() * 12);
     const Eigen::Matrix3d balance = balance_matrix(image, options.white_balance);
-    const double factor =
-        std::exp2(options.exposure_ev) * (options.automatic_exposure ? automatic_factor(image, balance) : 1.0);
+    const double automatic_ev = options.automatic_exposure ? automatic_exposure_ev(image, options.white_balance) : 0.0;
+    const double factor = std::exp2(options.exposure_ev + automatic_ev);
     Bitmap picture{"", image.width, image.height, {"R", "G", "B"}, {}};
     picture.data.reserve(image.pixel_count() * 3);
     for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel) {

@@ -25,6 +25,10 @@ struct ToneOptions {
     bool tone_curve = true;  // else what is above 1 is clipped by the writer
 };
 
+// The exposure, as a power of two, that the automatic one chooses; 0 for a black picture. Pictures to be seen side by
+// side (with and without a polarizer) are shown with the exposure of one of them.
+double automatic_exposure_ev(const StokesImage& image, WhiteBalance white_balance);
+
 // S0 of the picture as linear RGB in [0, 1] (above 1 without tone curve). Pixels that are not numbers are magenta.
 Bitmap tone_map(const StokesImage& image, const ToneOptions& options = {});
 

@@ -180,5 +180,22 @@ TEST(PlyFile, SurvivesTruncationAndMutation) {
     }
 }
 
+TEST(ObjFile, SurvivesMutation) {
+    const std::string good = square + "vt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1 4//1\nf -1 -2 -3\n";
+    const std::string alphabet = "vfn/-. 019e\n#\\\xff";
+    const ScratchFolder folder;
+    std::mt19937 random(4);
+    for (int copy = 0; copy < 1000; ++copy) {
+        std::string text = good;
+        for (int edit = 0; edit < 3; ++edit) text[random() % text.size()] = alphabet[random() % alphabet.size()];
+        try {
+            const TriangleMesh mesh = read_obj(folder.write("a.obj", text)).mesh;
+            for (const auto& triangle : mesh.triangles)
+                for (const std::uint32_t corner : triangle) EXPECT_LT(corner, mesh.positions.size());
+        } catch (const Error&) {
+        }
+    }
+}
+
 }  // namespace
 }  // namespace patina::io

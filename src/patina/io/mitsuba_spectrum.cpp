@@ -115,9 +115,10 @@ SpectrumSpec read_blackbody(const Element& element) {
     return {SpectrumSpec::Kind::blackbody, {}, {kelvin, properties.number("scale", 1.0)}};
 }
 
+// An <rgb> emitter multiplies D65, so that D65 itself is white.
 SpectrumSpec read_d65(const Element& element) {
     const PluginProperties properties(element, {"scale"});
-    return {SpectrumSpec::Kind::d65, {}, {properties.number("scale", 1.0)}};
+    return {SpectrumSpec::Kind::rgb, {}, std::vector<double>(3, properties.number("scale", 1.0))};
 }
 
 SpectrumSpec read_srgb(const Element& element) {

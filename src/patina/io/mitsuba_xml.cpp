@@ -1,6 +1,7 @@
 #include "patina/io/mitsuba_xml.h"
 
 #include <algorithm>
+#include <unordered_map>
 #include <unordered_set>
 
 #include <fmt/format.h>
@@ -51,11 +52,10 @@ class SceneReader {
     void read_file(std::string text, const fs::path& path, Properties& scene);
     void check_root(const Element& root);
     void read_children(const Element& parent, Properties& node, int depth);
-    void read_child(const Element& child, Properties& node, int depth, std::unordered_set<std::string>& names);
+    void read_child(const Element& child, Properties& node, int depth);
     bool read_directive(const Element& element, Properties& node);
     void read_include(const Element& element, Properties& node);
-    void read_entry(const Element& element, PropertyValue value, Properties& node,
-                    std::unordered_set<std::string>& names);
+    void read_entry(const Element& element, PropertyValue value, Properties& node);
     void read_plugin(const Element& element, Properties& node, int depth);
 
     std::optional<fs::path> find_file(const LocatedText& name) const;
@@ -63,6 +63,7 @@ class SceneReader {
 
     SceneParameters parameters_;
     SceneReferences references_;
+    std::unordered_map<const Properties*, std::unordered_set<std::string>> names_;  // of the properties of each node
     fs::path scene_folder_;
     std::vector<fs::path> search_folders_;  // of <path>, the latest first
     std::vector<fs::path> open_files_;      // canonical, outermost first
@@ -101,16 +102,13 @@ void SceneReader::read_children(const Element& parent, Properties& node, int dep
     if (depth > deepest_nesting)
         throw input_error(parent.where(), "elements are nested too deeply",
                           fmt::format("at most {} levels are", deepest_nesting));
-    std::unordered_set<std::string> names;
-    for (const auto& entry : node.entries) names.insert(entry.name);
-    for (const Element& child : parent.children()) read_child(child, node, depth, names);
+    for (const Element& child : parent.children()) read_child(child, node, depth);
 }
 
-void SceneReader::read_child(const Element& child, Properties& node, int depth,
-                             std::unordered_set<std::string>& names) {
+void SceneReader::read_child(const Element& child, Properties& node, int depth) {
     if (read_directive(child, node)) return;
     const FileResolver resolve = [this](const LocatedText& name) { return expect_file(name); };
-    if (auto value = read_property(child, resolve)) return read_entry(child, std::move(*value), node, names);
+    if (auto value = read_property(child, resolve)) return read_entry(child, std::move(*value), node);
     if (contains(plugin_tags(), child.tag())) return read_plugin(child, node, depth);
 
     std::vector<std::string> known = property_tags();
@@ -168,10 +166,9 @@ void SceneReader::read_include(const Element& element, Properties& node) {
     read_file(read_text_file(path, largest_scene_bytes), path, node);
 }
 
-void SceneReader::read_entry(const Element& element, PropertyValue value, Properties& node,
-                             std::unordered_set<std::string>& names) {
+void SceneReader::read_entry(const Element& element, PropertyValue value, Properties& node) {
     const std::string name = element.name("name");
-    if (!names.insert(name).second)
+    if (!names_[&node].insert(name).second)
         throw input_error(element.where(), fmt::format("property {} is given twice", in_quotes(name)));
     if (node.entries.size() >= most_properties)
         throw input_error(element.where(), "too many properties",
@@ -180,7 +177,9 @@ void SceneReader::read_entry(const Element& element, PropertyValue value, Proper
     // Resolve what names a file.
     if (auto* text = std::get_if<std::string>(&value)) {
         const LocatedText located = element.text("value");
-        if (name == "filename" || name == "recipe" || name == "table") *text = expect_file(located).string();
+        // A film's filename, of older files, is one to be written.
+        const bool names_file = name == "filename" || name == "recipe" || name == "table";
+        if (names_file && node.category != "film") *text = expect_file(located).string();
         if (name == "material")
             if (const auto found = find_file(located)) *text = found->string();
     }

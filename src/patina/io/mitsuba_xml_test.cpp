@@ -129,7 +129,10 @@ TEST(MitsubaXml, ReadsEverySpectrumForm) {
         spectrum_of("<spectrum type='blackbody' name='s'><float name='temperature' value='5000'/></spectrum>");
     EXPECT_EQ(blackbody.kind, Kind::blackbody);
     EXPECT_EQ(blackbody.values, (std::vector<double>{5000, 1}));
-    EXPECT_EQ(spectrum_of("<spectrum type='d65' name='s'><float name='scale' value='2'/></spectrum>").kind, Kind::d65);
+    // D65 is what an emitter of white rgb shines with.
+    const auto d65 = spectrum_of("<spectrum type='d65' name='s'><float name='scale' value='2'/></spectrum>");
+    EXPECT_EQ(d65.kind, Kind::rgb);
+    EXPECT_EQ(d65.values, (std::vector<double>{2, 2, 2}));
 
     const auto rgb = spectrum_of("<rgb name='s' value='0.1, 0.2, 0.3'/>");
     EXPECT_EQ(rgb.kind, Kind::rgb);
@@ -180,6 +183,14 @@ TEST(MitsubaXml, FileNamesBecomePathsOfExistingFiles) {
     EXPECT_TRUE(fs::exists(read_mitsuba_scene(path)->only_child("shape")->string("filename")));
     EXPECT_THAT(error_of("<shape type='ply'><string name='filename' value='gone.ply'/></shape>"),
                 HasSubstr("scene.xml:2:50: there is no file \"gone.ply\""));
+}
+
+TEST(MitsubaXml, APropertyGivenAgainInAnIncludeIsRefused) {
+    const ScratchFolder folder;
+    folder.write("b.xml", "<scene version='3.0.0'><float name='x' value='2'/></scene>");
+    const auto path =
+        folder.write("a.xml", "<scene version='3.0.0'><float name='x' value='1'/><include filename='b.xml'/></scene>");
+    EXPECT_THROW(read_mitsuba_scene(path), Error);
 }
 
 TEST(MitsubaXml, CyclicIncludesAreRefused) {
