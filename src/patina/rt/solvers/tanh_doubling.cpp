@@ -87,7 +87,7 @@ TanhCoth<Scalar> semi_infinite(const TransferSystem<Scalar>& system, const Arith
 template <class Scalar>
 LayerOperators<Scalar> tanh_doubling(const TransferSystem<Scalar>& system, const LayerRequest& request) {
     PATINA_EXPECT(request.optical_thickness > 0.0);
-    const Arithmetic<Scalar> arithmetic(system.signature, system.symmetric);
+    const Arithmetic<Scalar> arithmetic(system.signature, system.symmetric());
     const bool infinite = std::isinf(request.optical_thickness);
 
     TanhCoth<Scalar> t;
