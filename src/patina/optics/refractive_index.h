@@ -17,8 +17,8 @@ enum class Extrapolation {
 // m = n + i k, k >= 0, on [wavelength_min_nm, wavelength_max_nm]. Immutable.
 class OpticalConstants {
   public:
-    // n and k may come from tables on different grids or from a dispersion formula; `k_known` false means the source gives
-    // no k, which is then taken as 0 and flagged in outputs.
+    // n and k may come from tables on different grids or from a dispersion formula; `k_known` false means the source
+    // gives no k, which is then taken as 0 and flagged in outputs.
     OpticalConstants(std::string name, std::string citation, double wavelength_min_nm, double wavelength_max_nm,
                      bool k_known, std::function<std::complex<double>(double wavelength_nm)> index);
 
