@@ -11,9 +11,9 @@ namespace patina::render {
 
 namespace {
 
-Spectrum emission(const Properties& node, const char* name, const SceneResources& resources) {
+Spectrum emission(const Properties& node, const char* name) {
     const auto spec = node.spectrum(name);
-    return spec ? emission_spectrum(*spec, resources, node.location_of(name)) : Spectrum(1.0f);
+    return spec ? emission_table(*spec, node.location_of(name)) : Spectrum(1.0f);
 }
 
 Vec3 unit(const Eigen::Vector3d& v, const SourceLocation& where) {
@@ -33,7 +33,7 @@ Eigen::Matrix3f rotation_of(const Properties& node) {
 EnvironmentEmitter environment(const Properties& node, const SceneResources& resources) {
     const SourceLocation where = node.location_of("filename");
     const std::string file = node.string("filename");
-    if (!resources.load_bitmap || !resources.rgb_reflectance)
+    if (!resources.load_bitmap)
         throw Error(ErrorKind::not_built, where.to_string() + ": environment maps are not available");
     const std::shared_ptr<const Bitmap> image = resources.load_bitmap(file, false);
     const double scale = node.number("scale", 1.0);
@@ -44,7 +44,7 @@ EnvironmentEmitter environment(const Properties& node, const SceneResources& res
     EnvironmentEmitter e;
     e.width = image->width, e.height = image->height;
     e.to_local = rotation_of(node).transpose();
-    e.illuminant = emission_spectrum({SpectrumSpec::Kind::rgb, {}, {scale, scale, scale}}, resources, where);
+    e.illuminant = emission_table({SpectrumSpec::Kind::rgb, {}, {scale, scale, scale}}, where);
     std::vector<double> weight(static_cast<std::size_t>(e.width) * e.height);
     for (int y = 0; y < e.height; ++y)
         for (int x = 0; x < e.width; ++x) {
@@ -54,9 +54,8 @@ EnvironmentEmitter environment(const Properties& node, const SceneResources& res
                 throw input_error(where, fmt::format("pixel ({}, {}) is negative or not finite", x, y));
             // The sigmoid holds for components up to 1: the brightest becomes one half.
             const double brightest = std::max(2 * rgb.maxCoeff(), 1e-30);
-            const SigmoidCoefficients c = resources.rgb_reflectance(rgb / brightest);
-            e.texels.push_back({static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2]),
-                                static_cast<float>(brightest)});
+            const SigmoidCoefficients c = sigmoid_coefficients(rgb / brightest);
+            e.texels.push_back({c[0], c[1], c[2], static_cast<float>(brightest)});
             weight[static_cast<std::size_t>(y) * e.width + x] = rgb.mean();
         }
 
@@ -81,12 +80,12 @@ EnvironmentEmitter environment(const Properties& node, const SceneResources& res
     return e;
 }
 
-SpotEmitter spot(const Properties& node, const SceneResources& resources) {
+SpotEmitter spot(const Properties& node) {
     SpotEmitter e;
     const Eigen::Matrix4d m = node.transform("to_world");
     e.position = m.block<3, 1>(0, 3).cast<float>();
     e.axis = unit(m.block<3, 1>(0, 2), node.location_of("to_world"));
-    e.intensity = emission(node, "intensity", resources);
+    e.intensity = emission(node, "intensity");
     const double cutoff_deg = node.number("cutoff_angle", 20.0),
                  beam_deg = node.number("beam_width", 0.75 * cutoff_deg);
     if (!(cutoff_deg > 0 && cutoff_deg <= 180) || !(beam_deg > 0 && beam_deg <= cutoff_deg))
@@ -100,11 +99,11 @@ SpotEmitter spot(const Properties& node, const SceneResources& resources) {
 
 }  // namespace
 
-Spectrum build_area_radiance(const Properties& node, const SceneResources& resources) {
+Spectrum build_area_radiance(const Properties& node) {
     expect_plugin(node);
     if (node.type != "area")
         throw input_error(node.where, fmt::format("a shape cannot be a \"{}\" emitter", node.type), "", "use \"area\"");
-    Spectrum radiance = emission(node, "radiance", resources);
+    Spectrum radiance = emission(node, "radiance");
     expect_known_properties(node);
     return radiance;
 }
@@ -117,18 +116,17 @@ Emitter build_emitter(const Properties& node, const SceneResources& resources) {
     if (node.type == "point") {
         const Eigen::Vector4d p =
             node.transform("to_world") * node.vector("position", Eigen::Vector3d::Zero()).homogeneous();
-        emitter = PointEmitter{p.head<3>().cast<float>(), emission(node, "intensity", resources)};
+        emitter = PointEmitter{p.head<3>().cast<float>(), emission(node, "intensity")};
     } else if (node.type == "directional") {
         const Eigen::Matrix4d m = node.transform("to_world");
         const Eigen::Vector3d direction = m.block<3, 3>(0, 0) * node.vector("direction", Eigen::Vector3d::UnitZ());
-        emitter =
-            DirectionalEmitter{unit(direction, node.location_of("direction")), emission(node, "irradiance", resources)};
+        emitter = DirectionalEmitter{unit(direction, node.location_of("direction")), emission(node, "irradiance")};
     } else if (node.type == "constant") {
-        emitter = ConstantEmitter{emission(node, "radiance", resources)};
+        emitter = ConstantEmitter{emission(node, "radiance")};
     } else if (node.type == "envmap") {
         emitter = environment(node, resources);
     } else {
-        emitter = spot(node, resources);
+        emitter = spot(node);
     }
     expect_known_properties(node);
     return emitter;

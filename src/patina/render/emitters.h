@@ -116,6 +116,6 @@ class Lights {
 
 // The emitter a plugin names (not `area`, which belongs to its shape).
 Emitter build_emitter(const Properties& node, const SceneResources& resources);
-Spectrum build_area_radiance(const Properties& node, const SceneResources& resources);
+Spectrum build_area_radiance(const Properties& node);
 
 }  // namespace patina::render

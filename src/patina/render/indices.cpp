@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "patina/core/error.h"
+#include "patina/optics/materials.h"
 
 namespace patina::render {
 
@@ -24,15 +25,9 @@ constexpr Medium media[] = {{"vacuum", 1.0},      {"helium", 1.000036},        {
 
 optics::OpticalConstants material(const std::string& name, const Properties& node, const std::string& property,
                                   const BsdfBuilder& builder) {
-    if (!builder.resources->material)
-        throw Error(ErrorKind::not_built, node.where.to_string() + ": named materials are not available");
-    const optics::OpticalConstants constants = [&] {
-        try {
-            return builder.resources->material(name);
-        } catch (const Error& error) {
-            throw input_error(node.location_of(property), error.what());
-        }
-    }();
+    const SourceLocation where = node.location_of(property);
+    const optics::OpticalConstants constants =
+        builder.resources->material ? builder.resources->material(name) : optics::builtin_material(name, where);
     if (!constants.covers(wavelength_min_nm) || !constants.covers(wavelength_max_nm))
         (*builder.notes)["extrapolated " + name] =
             fmt::format("the data span {:g} .. {:g} nm; held constant beyond", constants.wavelength_min_nm(),
@@ -48,16 +43,11 @@ Spectrum part(const optics::OpticalConstants& constants, bool imaginary) {
     });
 }
 
-Spectrum numeric_spectrum(const SpectrumSpec& spec, const SourceLocation& where, const char* what, float smallest) {
-    if (spec.kind != SpectrumSpec::Kind::uniform && spec.kind != SpectrumSpec::Kind::sampled &&
-        spec.kind != SpectrumSpec::Kind::file)
-        throw input_error(where, fmt::format("{} must be a number or a sampled spectrum", what));
-    const Spectrum spectrum = spec.kind == SpectrumSpec::Kind::uniform ? Spectrum(static_cast<float>(spec.values.at(0)))
-                                                                       : Spectrum(interpolated(spec, false, where));
-    if (!(spectrum.smallest() >= smallest) || !std::isfinite(spectrum.largest()))
-        throw input_error(where, fmt::format("{} out of range", what),
-                          fmt::format("it goes down to {}", spectrum.smallest()),
-                          fmt::format("keep it at or above {}", smallest));
+Spectrum index_table(const SpectrumSpec& spec, const SourceLocation& where) {
+    Spectrum spectrum = property_table(spec, where);
+    if (!(spectrum.smallest() >= 1e-3f))
+        throw input_error(where, "refractive index out of range",
+                          fmt::format("it goes down to {}", spectrum.smallest()), "keep it positive");
     return spectrum;
 }
 
@@ -71,8 +61,7 @@ bool is_string(const Properties& node, std::string_view name) {
 
 Spectrum real_index(const Properties& node, const std::string& name, std::string_view fallback,
                     const BsdfBuilder& builder) {
-    if (node.has(name) && !is_string(node, name))
-        return numeric_spectrum(*node.spectrum(name), node.location_of(name), "refractive index", 1e-3f);
+    if (node.has(name) && !is_string(node, name)) return index_table(*node.spectrum(name), node.location_of(name));
     const std::string medium = node.string(name, fallback);
     for (const Medium& known : media)
         if (known.name == medium) return Spectrum(static_cast<float>(known.index));
@@ -83,8 +72,7 @@ ConductorIndex conductor_index(const Properties& node, const BsdfBuilder& builde
     const auto n = node.spectrum("eta"), k = node.spectrum("k");
     if (n || k) {
         if (!n || !k) throw input_error(node.where, "\"eta\" and \"k\" must be given together");
-        return {numeric_spectrum(*n, node.location_of("eta"), "eta", 0),
-                numeric_spectrum(*k, node.location_of("k"), "k", 0)};
+        return {property_table(*n, node.location_of("eta")), property_table(*k, node.location_of("k"))};
     }
     const std::string name = node.string("material", "Cu");
     if (name == "none") return {Spectrum(0.0f), Spectrum(1.0f)};

@@ -18,8 +18,7 @@ class SceneBuilder {
                         &scene_->notes} {}
 
     std::shared_ptr<const Scene> build() {
-        if (!resources_.cie_xyz) throw Error(ErrorKind::not_built, "rendering needs the colour matching functions");
-        scene_->matching = std::make_unique<const ColourMatching>(resources_);
+        scene_->matching = std::make_unique<const ColourMatching>();
         build_camera();
         if ((scene_->integrator_node = root_.only_child("integrator"))) build_integrator(*scene_->integrator_node);
         for (const auto& node : root_.children_of("bsdf")) bsdf_index(node);
@@ -86,7 +85,7 @@ class SceneBuilder {
         scene_->geometry.shapes[index].bsdf = material ? bsdf_index(material) : default_bsdf();
         if (const auto emitter = node.only_child("emitter")) {
             scene_->geometry.shapes[index].emitter = static_cast<int>(emitters_.size());
-            emitters_.push_back(AreaEmitter{index, build_area_radiance(*emitter, resources_)});
+            emitters_.push_back(AreaEmitter{index, build_area_radiance(*emitter)});
         }
         expect_known_properties(node);
     }

@@ -2,11 +2,11 @@
 // Spectra as the kernels read them: dense tables of one nanometre, looked up at the four wavelengths of a path.
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "patina/core/properties.h"
 #include "patina/render/packet.h"
-#include "patina/render/scene_resources.h"
 
 namespace patina::render {
 
@@ -51,7 +51,7 @@ class Spectrum {
   public:
     Spectrum() = default;  // zero
     explicit Spectrum(float uniform) : uniform_(uniform) {}
-    explicit Spectrum(const SpectrumFunction& function);
+    explicit Spectrum(const std::function<double(double wavelength_nm)>& function);
 
     Float4 at(const Wavelengths& w) const {
         if (values_.empty()) return splat(uniform_);
@@ -71,27 +71,25 @@ class Spectrum {
     std::vector<float> values_;  // [spectrum_nodes], or empty for a uniform spectrum
 };
 
-// Reflectances, transmittances and weights: <rgb> is upsampled to a smooth spectrum, values must lie in [0, 1].
-// Throws Error(input) at `where` otherwise.
-Spectrum reflectance_spectrum(const SpectrumSpec& spec, const SceneResources& resources, const SourceLocation& where);
+// The meanings of spectral/scene_spectrum.h as tables. Throws Error(input) at `where` for values out of range.
+Spectrum reflectance_table(const SpectrumSpec& spec, const SourceLocation& where);
+Spectrum emission_table(const SpectrumSpec& spec, const SourceLocation& where);
+Spectrum property_table(const SpectrumSpec& spec, const SourceLocation& where);
 
-// Emission: <rgb> multiplies CIE D65 of luminance 1, blackbody is Planck's radiance; values must be >= 0.
-Spectrum emission_spectrum(const SpectrumSpec& spec, const SceneResources& resources, const SourceLocation& where);
-
-// Piecewise linear function through (wavelengths_nm, values), constant beyond the ends or zero there.
-SpectrumFunction interpolated(const SpectrumSpec& sampled, bool zero_outside, const SourceLocation& where);
-
-// Reflectance of Jakob & Hanika's (2019) sigmoid at the path's wavelengths.
-inline Float4 sigmoid_reflectance(const std::array<float, 3>& c, const Wavelengths& w) {
-    const Float4 x = (w.nm * c[0] + c[1]) * w.nm + c[2];
+// Smooth reflectance of a colour (spectral/rgb_upsampling.h), for textures: three coefficients a texel.
+using SigmoidCoefficients = std::array<float, 3>;
+SigmoidCoefficients sigmoid_coefficients(const Eigen::Vector3d& rgb);
+inline Float4 sigmoid_reflectance(const SigmoidCoefficients& c, const Wavelengths& w) {
+    const Float4 t = (w.nm - 595.0f) * (1 / 235.0f);
+    const Float4 x = (t * c[0] + c[1]) * t + c[2];
     return 0.5f + 0.5f * x / sqrt(1.0f + x * x);
 }
 
-// Colour matching functions per nanometre, scaled so that radiance averaged over wavelength samples with uniform
-// density on the visible range gives CIE XYZ with Y = 1 for the uniform unit spectrum.
+// CIE 1931 colour matching functions, scaled so that radiance averaged over wavelength samples with uniform density on
+// the visible range gives XYZ with Y = 1 for the uniform unit spectrum.
 struct ColourMatching {
     Spectrum x, y, z;
-    explicit ColourMatching(const SceneResources& resources);
+    ColourMatching();
 };
 
 // CIE XYZ to linear sRGB (IEC 61966-2-1, D65 white, no adaptation).

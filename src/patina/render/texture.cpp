@@ -9,14 +9,7 @@ namespace patina::render {
 
 namespace {
 
-// Coefficients of a grey g: the constant sigmoid argument x with S(x) = g.
-std::array<float, 3> grey_coefficients(double grey) {
-    const double s = std::clamp(2 * grey - 1, -0.999999, 0.999999);
-    return {0.0f, 0.0f, static_cast<float>(s / std::sqrt(1 - s * s))};
-}
-
-std::shared_ptr<SpectralBitmap> upsample(const Bitmap& image, const SceneResources& resources,
-                                         const SourceLocation& where) {
+std::shared_ptr<SpectralBitmap> upsample(const Bitmap& image, const SourceLocation& where) {
     auto result = std::make_shared<SpectralBitmap>();
     result->width = image.width;
     result->height = image.height;
@@ -24,19 +17,11 @@ std::shared_ptr<SpectralBitmap> upsample(const Bitmap& image, const SceneResourc
     const bool colour = image.channel_count() >= 3;
     if (image.width < 1 || image.height < 1 || image.channel_count() < 1)
         throw input_error(where, fmt::format("image \"{}\" is empty", image.name));
-    if (colour && !resources.rgb_reflectance)
-        throw Error(ErrorKind::not_built, where.to_string() + ": colour textures are not available");
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) {
             const float* p = image.pixel(x, y);
-            if (!colour || (p[0] == p[1] && p[1] == p[2])) {
-                result->coefficients.push_back(grey_coefficients(p[0]));
-                continue;
-            }
-            const Eigen::Vector3d rgb = Eigen::Vector3d(p[0], p[1], p[2]).cwiseMax(0.0).cwiseMin(1.0);
-            const SigmoidCoefficients c = resources.rgb_reflectance(rgb);
             result->coefficients.push_back(
-                {static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2])});
+                sigmoid_coefficients(colour ? Eigen::Vector3d(p[0], p[1], p[2]) : Eigen::Vector3d::Constant(p[0])));
         }
     return result;
 }
@@ -87,7 +72,7 @@ Texture Texture::reflectance(const Properties& plugin, const std::string& name, 
     }
     const auto spec = plugin.spectrum(name);
     if (!spec) return Spectrum(fallback);
-    return reflectance_spectrum(*spec, resources, plugin.location_of(name));
+    return reflectance_table(*spec, plugin.location_of(name));
 }
 
 Texture Texture::build(const Properties& texture, const SceneResources& resources) {
@@ -102,13 +87,13 @@ Texture Texture::build(const Properties& texture, const SceneResources& resource
         const bool raw = texture.boolean("raw", false);
         if (!resources.load_bitmap)
             throw Error(ErrorKind::not_built, texture.where.to_string() + ": image files are not available");
-        result.bitmap_ = upsample(*resources.load_bitmap(file, raw), resources, texture.location_of("filename"));
+        result.bitmap_ = upsample(*resources.load_bitmap(file, raw), texture.location_of("filename"));
         expect_known_properties(texture);
         return result;
     }
     const auto colour = [&](const char* name, float fallback) {
         const auto spec = texture.spectrum(name);
-        return spec ? reflectance_spectrum(*spec, resources, texture.location_of(name)) : Spectrum(fallback);
+        return spec ? reflectance_table(*spec, texture.location_of(name)) : Spectrum(fallback);
     };
     result.spectrum_ = colour("color0", 0.4f);
     result.other_ = std::make_shared<const Texture>(Texture(colour("color1", 0.2f)));

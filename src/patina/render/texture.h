@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "patina/render/scene_resources.h"
 #include "patina/render/spectrum.h"
 #include "patina/render/vec.h"
 
@@ -11,7 +12,7 @@ namespace patina::render {
 // A bitmap whose pixels were upsampled once to reflectance coefficients, bilinear between pixel centres, repeated.
 struct SpectralBitmap {
     int width = 0, height = 0;
-    std::vector<std::array<float, 3>> coefficients;  // [y][x], row 0 at v = 1; greys hold (0, 0, logit)
+    std::vector<SigmoidCoefficients> coefficients;  // [y][x], row 0 at v = 1
 
     Float4 at(const Wavelengths& w, Vec2 uv) const;
 };
