@@ -14,7 +14,7 @@ struct Layer {
     double optical_thickness = 0.0;         // extinction, >= 0
     double single_scattering_albedo = 0.0;  // 0 .. 1
     optics::ExpansionCoefficients expansion;
-    double refractive_index = 1.0;          // of the host, real; light refracts wherever neighbouring indices differ
+    double refractive_index = 1.0;  // of the host, real; light refracts wherever neighbouring indices differ
 };
 
 struct BlackBase {};

@@ -13,16 +13,16 @@
 namespace patina::rt {
 
 struct SolveOptions {
-    int streams = 16;             // quadrature nodes per hemisphere in the medium above (air); denser media add their own
+    int streams = 16;  // quadrature nodes per hemisphere in the medium above (air); denser media add their own
     double fourier_tolerance = 1e-9;  // stop at the Fourier order whose largest element, relative to the BRDF, is below
-    bool scalar = false;          // intensity only (the 1x1 problem), to show what ignoring polarization costs
+    bool scalar = false;              // intensity only (the 1x1 problem), to show what ignoring polarization costs
 };
 
 struct Diagnostics {
     bool converged = true;
     int streams = 0;
     int fourier_orders = 0;
-    double energy_balance = 0.0;   // largest |1 - (reflected + absorbed + transmitted)| seen where it is known exactly
+    double energy_balance = 0.0;  // largest |1 - (reflected + absorbed + transmitted)| seen where it is known exactly
     std::vector<std::string> notes;
 };
 
@@ -31,8 +31,8 @@ struct Diagnostics {
 // modes[m] is (4N x 4N), 4x4 block (o, i) = f^m(mu[o], mu[i]) in 1/sr, no cosine and no weight inside:
 //   f(mu_o, mu_i, phi) = sum_m (2 - delta_m0) T_m(phi) o f^m,
 // where the elements {I,Q}<-{I,Q} and {U,V}<-{U,V} take cos(m phi), {I,Q}<-{U,V} take -sin(m phi) and {U,V}<-{I,Q} take
-// +sin(m phi); phi is the azimuth of the outgoing minus that of the incident PROPAGATION direction, right-handed about the
-// outward normal. S_out = sum over incidence of f S_in cos(theta_i) d omega.
+// +sin(m phi); phi is the azimuth of the outgoing minus that of the incident PROPAGATION direction, right-handed about
+// the outward normal. S_out = sum over incidence of f S_in cos(theta_i) d omega.
 struct Reflection {
     std::vector<double> mu;       // cosines in the medium above, ascending, N
     std::vector<double> weights;  // quadrature weights of d mu on (0, 1), N
@@ -42,11 +42,12 @@ struct Reflection {
 
 // Stokes radiances wanted at exact directions (no interpolation between nodes).
 struct FieldRequest {
-    double mu_i = 1.0;                      // cosine of incidence in the medium above, (0, 1]
-    optics::Stokes incident{1, 0, 0, 0};    // Stokes vector of the beam, times flux pi through a plane normal to it
-    std::vector<double> optical_depths;     // 0 = just above the top interface (up) / just below it (down); increasing downward
-    std::vector<double> mu_o;               // cosines of the view direction, [0, 1]; used for both hemispheres
-    std::vector<double> phi;                // radians
+    double mu_i = 1.0;                    // cosine of incidence in the medium above, (0, 1]
+    optics::Stokes incident{1, 0, 0, 0};  // Stokes vector of the beam, times flux pi through a plane normal to it
+    std::vector<double>
+        optical_depths;        // 0 = just above the top interface (up) / just below it (down); increasing downward
+    std::vector<double> mu_o;  // cosines of the view direction, [0, 1]; used for both hemispheres
+    std::vector<double> phi;   // radians
 };
 
 struct Field {
@@ -71,8 +72,8 @@ class Solver {
 const std::vector<std::unique_ptr<Solver>>& solvers();
 const Solver& solver_named(std::string_view name);
 
-// Throws Error(input) for anything physically impossible: albedo outside 0..1, negative or NaN thickness, coefficients of
-// unequal length or alpha1[0] != 1, no layer, an infinite layer above another.
+// Throws Error(input) for anything physically impossible: albedo outside 0..1, negative or NaN thickness, coefficients
+// of unequal length or alpha1[0] != 1, no layer, an infinite layer above another.
 void validate(const Problem& problem);
 
 // The specular (delta) part along the mirror direction, radiance out = M radiance in, for incidence at cosine mu in the

@@ -1,0 +1,117 @@
+#include "patina/rt/solvers/tanh_doubling.h"
+
+#include <cmath>
+#include <limits>
+
+#include "patina/core/contract.h"
+#include "patina/rt/solvers/parallel_sum.h"
+
+namespace patina::rt {
+
+namespace {
+
+template <class Scalar>
+using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+
+template <class Scalar>
+struct TanhCoth {
+    Matrix<Scalar> x, u;
+};
+
+// Thin layer of half thickness h: the fifth convergent of tanh z = z/(1 + z^2/(3 + z^2/(5 + ...))), relative error
+// 1e-7 z^10, and its reciprocal. (a : b) is the parallel sum 1/(1/a + 1/b); e = h H may be singular, h G is not.
+template <class Scalar>
+TanhCoth<Scalar> thin_layer(const TransferSystem<Scalar>& system, Scalar h, const Arithmetic<Scalar>& arithmetic) {
+    const Matrix<Scalar> e = h * system.h;
+    const Matrix<Scalar> g = arithmetic.inverse(h * system.g);
+    const auto fraction = [&](int k, const Matrix<Scalar>& below) {
+        return arithmetic.parallel_sum(e / Scalar(k), below);
+    };
+    TanhCoth<Scalar> result;
+    result.x = fraction(1, 3 * g + fraction(5, 7 * g + e / Scalar(9)));
+    result.u = g + fraction(3, 5 * g + fraction(7, 9 * g));
+    return result;
+}
+
+template <class Scalar>
+void double_thickness(TanhCoth<Scalar>& t, const TransferSystem<Scalar>& system, const Arithmetic<Scalar>& arithmetic) {
+    Matrix<Scalar> sum = t.x + t.u;
+    t.x = arithmetic.parallel_difference(t.x, sum);
+    t.x *= 2;
+    t.u = sum / 2;
+
+    // Keep a conservative layer so: rounding errors of X isotropic = 0 and flux^T X = 0 would double with the
+    // thickness.
+    if (system.isotropic.size() > 0) {
+        const Scalar norm = system.flux.dot(system.isotropic);
+        t.x -= (t.x * system.isotropic).eval() * (system.flux.transpose() / norm);
+        t.x -= (system.isotropic / norm) * (system.flux.transpose() * t.x).eval();
+    }
+}
+
+// Doublings that bring the start within reach. The error of the start is 1e-7 z^10 for a mode of half thickness z 2^-k,
+// which matters for z < 6 only (thicker modes are saturated: z <= 0.28 at the start leaves 1e-16), and the doubling
+// contracts whatever error thicker modes have if they start below z = 3.
+int doublings(double half_thickness, double smallest_mu) {
+    const double z = half_thickness / smallest_mu;
+    const double steps = std::max(std::log2(std::min(z, 5.5) / 0.28), std::log2(z / 3.0));
+    return std::max(0, static_cast<int>(std::ceil(steps)));
+}
+
+// Removes from U the mode that decays only as 1/thickness in a conservative layer: with Y = 1/U growing by s a b^T, the
+// limit of 1/(Y + s a b^T) for s to infinity.
+template <class Scalar>
+void saturate_conservative(TanhCoth<Scalar>& t, const TransferSystem<Scalar>& system) {
+    const auto right = (t.u * system.isotropic).eval();
+    const auto left = (system.flux.transpose() * t.u).eval();
+    const Scalar norm = system.flux.dot(right);
+    t.u -= right * left / norm;
+}
+
+template <class Scalar>
+TanhCoth<Scalar> semi_infinite(const TransferSystem<Scalar>& system, const Arithmetic<Scalar>& arithmetic) {
+    constexpr int most_doublings = 80;
+    TanhCoth<Scalar> t = thin_layer<Scalar>(system, Scalar(0.28) * Scalar(system.smallest_mu), arithmetic);
+    for (int step = 0; step < most_doublings; ++step) {
+        const Matrix<Scalar> before = t.x;
+        double_thickness(t, system, arithmetic);
+        const Scalar change = (t.x - before).cwiseAbs().maxCoeff() / t.x.cwiseAbs().maxCoeff();
+        if (change <= 4 * std::numeric_limits<Scalar>::epsilon()) break;
+    }
+    if (system.isotropic.size() > 0) saturate_conservative(t, system);
+    return t;
+}
+
+}  // namespace
+
+template <class Scalar>
+LayerOperators<Scalar> tanh_doubling(const TransferSystem<Scalar>& system, const LayerRequest& request) {
+    PATINA_EXPECT(request.optical_thickness > 0.0);
+    const Arithmetic<Scalar> arithmetic(system.signature, system.symmetric());
+    const bool infinite = std::isinf(request.optical_thickness);
+
+    TanhCoth<Scalar> t;
+    if (infinite) {
+        t = semi_infinite(system, arithmetic);
+    } else {
+        const double half = 0.5 * request.optical_thickness;
+        const int steps = doublings(half, system.smallest_mu);
+        t = thin_layer<Scalar>(system, std::ldexp(Scalar(half), -steps), arithmetic);
+        for (int step = 0; step < steps; ++step) double_thickness(t, system, arithmetic);
+    }
+
+    // In the signed matrices: reflection P = 1/(P + X) + 1/(P + U) - P, transmission P = 1/(P + X) - 1/(P + U).
+    t.x.diagonal() += system.signature;
+    t.u.diagonal() += system.signature;
+    const Matrix<Scalar> even = arithmetic.inverse(t.x), odd = arithmetic.inverse(t.u);
+    LayerOperators<Scalar> result;
+    result.reflection = (even + odd) * system.signature.asDiagonal();
+    result.reflection.diagonal().array() -= Scalar(1);
+    if (request.transmission && !infinite) result.transmission = (even - odd) * system.signature.asDiagonal();
+    return result;
+}
+
+template LayerOperators<double> tanh_doubling(const TransferSystem<double>&, const LayerRequest&);
+template LayerOperators<long double> tanh_doubling(const TransferSystem<long double>&, const LayerRequest&);
+
+}  // namespace patina::rt
