@@ -28,8 +28,8 @@ std::shared_ptr<const Scene> build_scene(const Properties& root, const SceneReso
 struct RenderOptions {
     std::optional<int> samples_per_pixel;      // sampler's sample_count; the default without either is 16
     std::optional<double> time_limit_seconds;  // stop after the pass during which it elapsed
-    std::optional<double> noise_target;        // stop when the relative standard error of the mean luminance,
-                                               // root mean square over the pixels, falls below
+    std::optional<double> noise_target;        // stop when the luminance's standard error (root mean square over the
+                                               // pixels) falls below this share of the mean luminance
     std::optional<std::pair<int, int>> size;   // width, height of the film
     std::optional<std::array<int, 4>> crop;    // x0, y0, x1, y1 in pixels of the film, x1 and y1 exclusive
     std::optional<std::string> integrator;     // plugin name in place of the scene's

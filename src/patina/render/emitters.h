@@ -1,0 +1,121 @@
+#pragma once
+// Light sources. All are unpolarized: a radiance per wavelength, the Stokes vector (L, 0, 0, 0).
+
+#include <variant>
+#include <vector>
+
+#include "patina/render/bsdf.h"
+#include "patina/render/geometry.h"
+#include "patina/render/spectrum.h"
+
+namespace patina::render {
+
+// Light that arrives at a point from one direction.
+struct LightSample {
+    Vec3 direction;  // from the point to the light
+    float distance = INFINITY;
+    float pdf = 0;  // per solid angle; 1 for a delta light
+    bool delta = false;
+    Float4 radiance;  // radiance, or the irradiance on a plane across the direction for a delta light
+};
+
+// A surface that shines from its outside, `area`: the same radiance into every direction (Lambert's law).
+struct AreaEmitter {
+    int shape = -1;
+    Spectrum radiance;
+};
+
+// Intensity I into every direction from a point, `point`: irradiance I cos / r^2.
+struct PointEmitter {
+    Vec3 position;
+    Spectrum intensity;
+};
+
+// Parallel light, `directional`: irradiance on a plane across it.
+struct DirectionalEmitter {
+    Vec3 direction;  // in which the light travels
+    Spectrum irradiance;
+};
+
+// A cone of light, `spot`: intensity I inside beam_width, falling linearly in angle to 0 at the cutoff (Mitsuba's
+// profile).
+struct SpotEmitter {
+    Vec3 position, axis;
+    Spectrum intensity;
+    float cutoff_rad = 0, beam_width_rad = 0;
+
+    float falloff(const Vec3& direction) const;  // direction of travel, unit
+};
+
+// The same radiance from everywhere, `constant`. Found by the paths that leave the scene, never sampled: no surface
+// sees it better than its own scattering does.
+struct ConstantEmitter {
+    Spectrum radiance;
+};
+
+// Radiance from infinity given as a latitude-longitude picture, `envmap`. In the emitter's own axes y is up, u grows
+// with the azimuth atan2(x, -z), v with the angle from +y (Mitsuba's). Colours are upsampled as emission: smooth
+// spectrum x D65.
+struct EnvironmentEmitter {
+    int width = 0, height = 0;
+    std::vector<std::array<float, 4>> texels;   // [y][x]: sigmoid coefficients and a scale
+    Spectrum illuminant;                        // D65 of luminance 1 times the plugin's scale
+    Eigen::Matrix3f to_local;                   // rotation from the world
+    DiscreteDistribution rows;                  // by what a row sends, then
+    std::vector<DiscreteDistribution> columns;  // by texel in the row
+
+    Float4 radiance(const Wavelengths& w, const Vec3& direction) const;  // direction towards infinity
+    float pdf(const Vec3& direction) const;
+    void sample(const Vec2& u, Vec3& direction, float& pdf) const;
+};
+
+using Emitter =
+    std::variant<AreaEmitter, PointEmitter, DirectionalEmitter, SpotEmitter, ConstantEmitter, EnvironmentEmitter>;
+
+class Lights {
+  public:
+    Lights() = default;
+    // Emitters in the order of the scene; the geometry must be committed.
+    Lights(std::vector<Emitter> emitters, const Geometry& geometry);
+
+    // Draws a light and a direction to it; false: no light can be seen this way. The pdf includes the choice of the
+    // light.
+    bool sample(const Geometry& geometry, const Vec3& from, const Wavelengths& w, float u, const Vec2& u2,
+                LightSample& sample) const;
+
+    // Radiance that leaves a surface towards `outgoing` (world).
+    Float4 surface_radiance(int emitter, const SurfacePoint& at, const Vec3& outgoing, const Wavelengths& w) const {
+        if (outgoing.dot(at.geometric_normal) <= 0) return splat(0);
+        return std::get<AreaEmitter>(emitters_[emitter]).radiance.at(w);
+    }
+    // Density with which sample() finds a point of an emitting surface, per solid angle at `from`.
+    float surface_pdf(int emitter, const Geometry& geometry, const Hit& hit, const SurfacePoint& at,
+                      const Vec3& from) const {
+        return choice_.probability(slot_[emitter]) * geometry.shape_pdf(hit, at, from);
+    }
+    // What comes from infinity, each environment with its density in sample() (0: never sampled).
+    template <class Visitor>
+    void for_each_environment(const Vec3& direction, const Wavelengths& w, const Visitor& visit) const {
+        for (int index : environments_) {
+            if (const auto* constant = std::get_if<ConstantEmitter>(&emitters_[index]))
+                visit(constant->radiance.at(w), 0.0f);
+            if (const auto* map = std::get_if<EnvironmentEmitter>(&emitters_[index]))
+                visit(map->radiance(w, direction), choice_.probability(slot_[index]) * map->pdf(direction));
+        }
+    }
+    bool any_sampled() const { return !sampled_.empty(); }
+    const std::vector<Emitter>& all() const { return emitters_; }
+
+  private:
+    std::vector<Emitter> emitters_;
+    std::vector<int> sampled_;       // emitters that sample() draws from
+    std::vector<int> slot_;          // of an emitter in sampled_, -1 for none
+    std::vector<int> environments_;  // emitters at infinity that paths run into
+    DiscreteDistribution choice_;    // over sampled_, by power
+};
+
+// The emitter a plugin names (not `area`, which belongs to its shape).
+Emitter build_emitter(const Properties& node, const SceneResources& resources);
+Spectrum build_area_radiance(const Properties& node);
+
+}  // namespace patina::render

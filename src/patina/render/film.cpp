@@ -1,0 +1,159 @@
+#include "patina/render/film.h"
+
+#include <fmt/format.h>
+
+#include "patina/core/contract.h"
+#include "patina/core/error.h"
+#include "patina/render/plugins.h"
+
+namespace patina::render {
+
+namespace {
+
+constexpr int filter_nodes = 1025;
+
+std::vector<float> inverse_cdf(double radius, const std::function<double(double)>& filter) {
+    // Integrate by the trapezoidal rule on a fine grid, then invert.
+    constexpr int steps = 8192;
+    std::vector<double> cdf(steps + 1, 0.0);
+    const double h = 2 * radius / steps;
+    for (int i = 1; i <= steps; ++i)
+        cdf[i] = cdf[i - 1] + 0.5 * h * (filter(-radius + (i - 1) * h) + filter(-radius + i * h));
+    std::vector<float> inverse(filter_nodes);
+    int at = 0;
+    for (int i = 0; i < filter_nodes; ++i) {
+        const double target = cdf.back() * i / (filter_nodes - 1);
+        while (at < steps - 1 && cdf[at + 1] < target) ++at;
+        const double width = cdf[at + 1] - cdf[at];
+        inverse[i] = static_cast<float>(-radius + h * (at + (width > 0 ? (target - cdf[at]) / width : 0.0)));
+    }
+    return inverse;
+}
+
+}  // namespace
+
+PixelFilter::PixelFilter(const Properties& node) : name_(node.type) {
+    expect_plugin(node);
+    const auto radius_of = [&](double fallback) {
+        const double radius = node.number("radius", fallback);
+        if (!(radius > 0 && radius < 100)) throw input_error(node.location_of("radius"), "filter radius out of range");
+        return radius;
+    };
+    if (node.type == "box") {
+        if (const double radius = radius_of(0.5); radius != 0.5)
+            inverse_cdf_ = inverse_cdf(radius, [](double) { return 1.0; });
+    } else if (node.type == "tent") {
+        const double radius = radius_of(1.0);
+        inverse_cdf_ = inverse_cdf(radius, [=](double x) { return std::max(0.0, 1 - std::abs(x) / radius); });
+    } else {
+        const double sigma = node.number("stddev", 0.5);
+        if (!(sigma > 0 && sigma < 100)) throw input_error(node.location_of("stddev"), "stddev out of range");
+        const double radius = 4 * sigma, end = std::exp(-0.5 * 16.0);
+        inverse_cdf_ = inverse_cdf(
+            radius, [=](double x) { return std::max(0.0, std::exp(-0.5 * x * x / (sigma * sigma)) - end); });
+    }
+    expect_known_properties(node);
+}
+
+float PixelFilter::sample(float u) const {
+    if (inverse_cdf_.empty()) return u - 0.5f;
+    const float x = u * (filter_nodes - 1);
+    const int i = std::min(static_cast<int>(x), filter_nodes - 2);
+    return inverse_cdf_[i] + (x - i) * (inverse_cdf_[i + 1] - inverse_cdf_[i]);
+}
+
+std::vector<double> FilmSettings::default_bins() {
+    std::vector<double> edges;
+    for (int i = 0; i <= 16; ++i) edges.push_back(380 + 25.0 * i);
+    return edges;
+}
+
+FilmSettings build_film(const Properties& node) {
+    expect_plugin(node);
+    FilmSettings film;
+    const auto positive = [&](const char* name, std::int64_t fallback) {
+        const std::int64_t value = node.integer(name, fallback);
+        if (value < 1 || value > 65536)
+            throw input_error(node.location_of(name), fmt::format("{} out of range", name),
+                              fmt::format("it is {}", value), "keep it between 1 and 65536");
+        return static_cast<int>(value);
+    };
+    film.width = positive("width", 768);
+    film.height = positive("height", 576);
+    film.crop_x = static_cast<int>(node.integer("crop_offset_x", 0));
+    film.crop_y = static_cast<int>(node.integer("crop_offset_y", 0));
+    film.crop_width = positive("crop_width", film.width);
+    film.crop_height = positive("crop_height", film.height);
+    if (film.crop_x < 0 || film.crop_y < 0 || film.crop_x + film.crop_width > film.width ||
+        film.crop_y + film.crop_height > film.height)
+        throw input_error(node.where, "the crop window leaves the film",
+                          fmt::format("film {} x {}", film.width, film.height));
+    if (const auto filter = node.only_child("rfilter")) film.filter = PixelFilter(*filter);
+    for (const char* name : {"file_format", "pixel_format", "component_format"}) node.string(name, "");
+    node.boolean("banner", false);
+    node.boolean("sample_border", false);
+    film.bin_edges_nm = FilmSettings::default_bins();
+    expect_known_properties(node);
+    return film;
+}
+
+Film::Film(const FilmSettings& settings, const ColourMatching& matching)
+    : settings_(settings), matching_(matching), bins_(static_cast<int>(settings.bin_edges_nm.size()) - 1) {
+    PATINA_EXPECT(bins_ >= 1);
+    stride_ = 4 * bins_ + 12 + 4 + 2;
+    sums_.assign(pixel_count() * stride_, 0.0f);
+    const std::vector<double>& edges = settings_.bin_edges_nm;
+    for (int b = 0; b < bins_; ++b)
+        bin_weight_.push_back(
+            static_cast<float>(wavelength_range_nm / wavelengths_per_path / (edges[b + 1] - edges[b])));
+    for (int node = 0; node < spectrum_nodes; ++node) {
+        const double nm = wavelength_min_nm + node;
+        const auto upper = std::upper_bound(edges.begin(), edges.end(), nm);
+        bin_of_.push_back(static_cast<int>(upper - edges.begin()) - 1);
+        upper_edge_.push_back(upper == edges.end() || *upper > nm + 1 ? INFINITY : static_cast<float>(*upper));
+    }
+}
+
+double Film::relative_noise() const {
+    double variance = 0, luminance = 0;
+    for (std::size_t pixel = 0; pixel < pixel_count(); ++pixel) {
+        const float* colour = &sums_[pixel * stride_] + 4 * bins_;
+        const double n = colour[17], mean_y = colour[1] / n;
+        luminance += mean_y;
+        variance += n > 1 ? std::max(0.0, colour[12] / n - mean_y * mean_y) / (n - 1) : INFINITY;
+    }
+    const double pixels = static_cast<double>(pixel_count());
+    return luminance > 0 ? std::sqrt(variance / pixels) / (luminance / pixels) : 0.0;
+}
+
+StokesImage Film::develop() const {
+    StokesImage image;
+    image.width = settings_.crop_width, image.height = settings_.crop_height;
+    image.crop_x = settings_.crop_x, image.crop_y = settings_.crop_y;
+    image.full_width = settings_.width, image.full_height = settings_.height;
+    image.bin_edges_nm = settings_.bin_edges_nm;
+    const std::size_t pixels = pixel_count();
+    image.spectral.resize(pixels * bins_ * 4);
+    image.rgb.resize(pixels * 12);
+    image.alpha.resize(pixels);
+    image.variance.resize(pixels * 4);
+    image.sample_count.resize(pixels);
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+        const float* sums = &sums_[pixel * stride_];
+        const float* colour = sums + 4 * bins_;
+        const float n = colour[17];
+        if (n == 0) continue;
+        for (int i = 0; i < 4 * bins_; ++i) image.spectral[pixel * bins_ * 4 + i] = sums[i] / n;
+        for (int s = 0; s < 4; ++s) {
+            const Vec3 xyz = Vec3(colour[3 * s], colour[3 * s + 1], colour[3 * s + 2]) / n;
+            Eigen::Map<Vec3>(image.stokes_rgb(pixel) + 3 * s) = xyz_to_srgb(xyz);
+            const float spread_y = std::max(0.0f, colour[12 + s] / n - xyz.y() * xyz.y());
+            image.variance[pixel * 4 + s] = n > 1 ? spread_y / (n - 1) : 0.0f;
+        }
+        image.alpha[pixel] = colour[16] / n;
+        image.sample_count[pixel] = static_cast<std::uint32_t>(n);
+    }
+    return image;
+}
+
+}  // namespace patina::render

@@ -1,0 +1,92 @@
+#pragma once
+// The film: what it is (size, window, filter, spectral bins) and the sums that samples leave on it.
+
+#include <vector>
+
+#include "patina/core/properties.h"
+#include "patina/core/stokes_image.h"
+#include "patina/render/packet.h"
+#include "patina/render/spectrum.h"
+#include "patina/render/vec.h"
+
+namespace patina::render {
+
+// A reconstruction filter sampled in proportion to its value, so that each sample belongs to one pixel with weight 1
+// (Ernst, Stamminger & Greiner 2006, Filter importance sampling). Filters with negative lobes cannot be.
+class PixelFilter {
+  public:
+    PixelFilter() = default;  // box of one pixel
+    // `box`, `tent`, `gaussian`; throws Error(input) for others.
+    explicit PixelFilter(const Properties& node);
+
+    // Offset from the pixel's centre, in pixels.
+    Vec2 sample(const Vec2& u) const { return {sample(u.x()), sample(u.y())}; }
+    const std::string& name() const { return name_; }
+
+  private:
+    float sample(float u) const;
+
+    std::string name_ = "box";
+    std::vector<float> inverse_cdf_;  // offsets at equidistant u; empty for the box
+};
+
+struct FilmSettings {
+    int width = 768, height = 576;
+    int crop_x = 0, crop_y = 0, crop_width = 768, crop_height = 576;
+    PixelFilter filter;
+    std::vector<double> bin_edges_nm;
+
+    static std::vector<double> default_bins();  // 16 over 380 .. 780 nm
+};
+
+// Reads `hdrfilm` (or `specfilm`); formats of files are the writer's business and are accepted unread.
+FilmSettings build_film(const Properties& node);
+
+// Sums over the samples of every pixel of the window. Pixels are independent: each may be written by one thread at a
+// time.
+class Film {
+  public:
+    Film(const FilmSettings& settings, const ColourMatching& matching);
+
+    // Adds one path: its Stokes vector at its four wavelengths.
+    void add(std::size_t pixel, const StokesPacket& stokes, const Wavelengths& w, bool hit) {
+        float* sums = &sums_[pixel * stride_];
+        // The mean of four wavelengths estimates the integral over the visible range; each bin takes its share.
+        for (int lane = 0; lane < wavelengths_per_path; ++lane) {
+            const int bin = bin_of_[w.node[lane]] + (w.nm[lane] >= upper_edge_[w.node[lane]] ? 1 : 0);
+            if (bin < 0 || bin >= bins_) continue;
+            float* cell = sums + 4 * bin;
+            for (int s = 0; s < 4; ++s) cell[s] += stokes[4 * s + lane] * bin_weight_[bin];
+        }
+        const Float4 x = matching_.x.at(w), y = matching_.y.at(w), z = matching_.z.at(w);
+        float* colour = sums + 4 * bins_;
+        float* squares = colour + 12;
+        for (int s = 0; s < 4; ++s) {
+            const Float4 value = stokes_row(stokes, s);
+            const float luminance = mean(y * value);
+            colour[3 * s] += mean(x * value);
+            colour[3 * s + 1] += luminance;
+            colour[3 * s + 2] += mean(z * value);
+            squares[s] += luminance * luminance;
+        }
+        squares[4] += hit ? 1.0f : 0.0f;
+        squares[5] += 1.0f;
+    }
+
+    // Root mean square over the pixels of the standard error of the luminance, over the picture's mean luminance.
+    double relative_noise() const;
+    StokesImage develop() const;
+    std::size_t pixel_count() const { return static_cast<std::size_t>(settings_.crop_width) * settings_.crop_height; }
+
+  private:
+    FilmSettings settings_;
+    const ColourMatching& matching_;
+    int bins_;
+    std::size_t stride_;
+    std::vector<float> sums_;        // [pixel][4 bins, 12 of XYZ per Stokes component, 4 squares of Y, hits, samples]
+    std::vector<float> bin_weight_;  // (visible range / number of wavelengths) / width of the bin
+    std::vector<int> bin_of_;        // [nanometre] bin at the nanometre's start, -1 before the first
+    std::vector<float> upper_edge_;  // [nanometre] where the next bin begins within this nanometre, or infinity
+};
+
+}  // namespace patina::render

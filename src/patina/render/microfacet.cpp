@@ -1,0 +1,42 @@
+#include "patina/render/microfacet.h"
+
+namespace patina::render {
+
+namespace {
+
+// Solves F(x) = u F(cot theta) for F(x) = int_-inf^x (cos - t sin)_+ exp(-t^2)/sqrt(pi) dt, the distribution of the
+// slopes seen under theta (Heitz & d'Eon 2014, eq. 9; Jakob 2014), by Newton steps kept inside a shrinking bracket.
+float visible_slope(float cos_theta, float sin_theta, float u) {
+    const double c = cos_theta, s = sin_theta;
+    const double largest = s > 0.2 * c ? c / s : 5.0;
+    const auto cdf = [&](double x) { return 0.5 * (c * (1 + std::erf(x)) + s * std::exp(-x * x) / std::sqrt(M_PI)); };
+    const double target = u * cdf(largest);
+    double low = -5.0, high = largest, x = std::min(0.0, 0.5 * (low + high));
+    for (int i = 0; i < 24; ++i) {
+        const double error = cdf(x) - target;
+        if (std::abs(error) < 1e-9) break;
+        (error > 0 ? high : low) = x;
+        const double slope = (c - x * s) * std::exp(-x * x) / std::sqrt(M_PI);
+        const double newton = x - error / slope;
+        x = newton > low && newton < high ? newton : 0.5 * (low + high);
+    }
+    return static_cast<float>(x);
+}
+
+}  // namespace
+
+Vec3 Microfacets::sample_beckmann(const Vec3& w, const Vec2& u) const {
+    // Stretch to unit roughness.
+    const Vec3 stretched = Vec3(w.x() * alpha_x, w.y() * alpha_y, w.z()).normalized();
+    const float sin_theta = std::hypot(stretched.x(), stretched.y());
+    const float cos_phi = sin_theta > 0 ? stretched.x() / sin_theta : 1.0f;
+    const float sin_phi = sin_theta > 0 ? stretched.y() / sin_theta : 0.0f;
+
+    // Draw the slopes along and across the view, rotate and unstretch them.
+    const float along = visible_slope(stretched.z(), sin_theta, u.x());
+    const float across = visible_slope(1, 0, u.y());
+    const float slope_x = cos_phi * along - sin_phi * across, slope_y = sin_phi * along + cos_phi * across;
+    return Vec3(-slope_x * alpha_x, -slope_y * alpha_y, 1).normalized();
+}
+
+}  // namespace patina::render

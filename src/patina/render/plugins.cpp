@@ -1,0 +1,169 @@
+#include "patina/render/plugins.h"
+
+#include <fmt/format.h>
+
+#include "patina/core/error.h"
+#include "patina/render/bsdf_set.h"
+
+namespace patina::render {
+
+namespace {
+
+const ParameterDescriptor to_world = {"to_world", "transform", "",
+                                      "identity", "",          "from the plugin's own space to the world"};
+const ParameterDescriptor flip_normals = {"flip_normals", "boolean", "", "false", "", "turns the outside inside"};
+
+void add_shapes(std::vector<PluginDescriptor>& all) {
+    const auto shape = [&](const char* name, const char* doc, std::vector<ParameterDescriptor> parameters) {
+        parameters.push_back(to_world);
+        parameters.push_back(flip_normals);
+        all.push_back({"shape", name, doc, std::move(parameters)});
+    };
+    shape("sphere", "An exact sphere.",
+          {{"center", "point", "scene units", "0, 0, 0", "", "its centre"},
+           {"radius", "number", "scene units", "1", "> 0", "its radius"}});
+    shape("rectangle", "The square -1 .. 1 in x and y, normal along +z.", {});
+    shape("disk", "The unit disk in x and y, normal along +z.", {});
+    shape("cube", "The cube -1 .. 1, normals outward.", {});
+    for (const char* name : {"obj", "ply"})
+        shape(name, "A triangle mesh from a file.",
+              {{"filename", "path", "", "", "", "the file"},
+               {"face_normals", "boolean", "", "false", "", "flat shading, the file's normals unused"},
+               {"flip_tex_coords", "boolean", "", "true for obj", "", "v counts from the top of the texture"}});
+}
+
+void add_emitters(std::vector<PluginDescriptor>& all) {
+    all.push_back({"emitter",
+                   "area",
+                   "A shape that shines from its outside.",
+                   {{"radiance", "spectrum", "W/(m^2 sr nm)", "1", ">= 0", "the same into every direction"}}});
+    all.push_back({"emitter",
+                   "point",
+                   "A point that shines into every direction.",
+                   {{"position", "point", "scene units", "0, 0, 0", "", "its place"},
+                    to_world,
+                    {"intensity", "spectrum", "W/(sr nm)", "1", ">= 0", "radiant intensity"}}});
+    all.push_back(
+        {"emitter",
+         "spot",
+         "A cone of light along +z.",
+         {to_world,
+          {"intensity", "spectrum", "W/(sr nm)", "1", ">= 0", "radiant intensity inside beam_width"},
+          {"cutoff_angle", "number", "degree", "20", "0 .. 180", "beyond it nothing"},
+          {"beam_width", "number", "degree", "3/4 of cutoff_angle", "0 .. cutoff_angle", "until it constant"}}});
+    all.push_back({"emitter",
+                   "directional",
+                   "Parallel light.",
+                   {{"direction", "vector", "", "+z through to_world", "", "in which the light travels"},
+                    to_world,
+                    {"irradiance", "spectrum", "W/(m^2 nm)", "1", ">= 0", "on a plane across the light"}}});
+    all.push_back({"emitter",
+                   "constant",
+                   "The same radiance from everywhere.",
+                   {{"radiance", "spectrum", "W/(m^2 sr nm)", "1", ">= 0", "of the surroundings"}}});
+    all.push_back({"emitter",
+                   "envmap",
+                   "Surroundings as a latitude-longitude picture, y up.",
+                   {{"filename", "path", "", "", "", "the picture"},
+                    {"scale", "number", "", "1", ">= 0", "factor on its radiance"},
+                    to_world}});
+}
+
+void add_camera(std::vector<PluginDescriptor>& all) {
+    std::vector<ParameterDescriptor> camera = {
+        to_world,
+        {"fov", "number", "degree", "39.6", "0 .. 180", "field of view along fov_axis"},
+        {"fov_axis", "string", "", "x", "x, y, diagonal, smaller, larger", "what fov measures"},
+        {"focal_length", "string", "mm", "50mm", "> 0", "instead of fov, on 36 x 24 mm film"},
+        {"near_clip", "number", "scene units", "0.01", "", "accepted, without effect"},
+        {"far_clip", "number", "scene units", "10000", "", "accepted, without effect"}};
+    all.push_back({"sensor", "perspective", "Pinhole camera.", camera});
+    camera.push_back({"aperture_radius", "number", "scene units", "", ">= 0", "of the lens"});
+    camera.push_back({"focus_distance", "number", "scene units", "", "> 0", "of the plane in focus"});
+    all.push_back({"sensor", "thinlens", "Camera with depth of field.", camera});
+    for (const char* name : {"hdrfilm", "specfilm"})
+        all.push_back({"film",
+                       name,
+                       "The picture's size and window.",
+                       {{"width", "integer", "pixel", "768", ">= 1", ""},
+                        {"height", "integer", "pixel", "576", ">= 1", ""},
+                        {"crop_offset_x", "integer", "pixel", "0", ">= 0", ""},
+                        {"crop_offset_y", "integer", "pixel", "0", ">= 0", ""},
+                        {"crop_width", "integer", "pixel", "width", ">= 1", ""},
+                        {"crop_height", "integer", "pixel", "height", ">= 1", ""},
+                        {"file_format", "string", "", "openexr", "", "accepted, the output's name decides"},
+                        {"pixel_format", "string", "", "rgba", "", "accepted, without effect"},
+                        {"component_format", "string", "", "float32", "", "accepted, without effect"},
+                        {"banner", "boolean", "", "false", "", "accepted, without effect"},
+                        {"sample_border", "boolean", "", "false", "", "accepted, without effect"}}});
+    for (const char* name : {"box", "tent", "gaussian"})
+        all.push_back({"rfilter",
+                       name,
+                       "Reconstruction filter, sampled.",
+                       {{"radius", "number", "pixel", "0.5 (box), 1 (tent)", "> 0", "reach"},
+                        {"stddev", "number", "pixel", "0.5", "> 0", "of the gaussian, cut at 4"}}});
+    for (const char* name : {"independent", "stratified", "multijitter", "orthogonal", "ldsampler"})
+        all.push_back({"sampler",
+                       name,
+                       "All names give the same Owen-scrambled sampler.",
+                       {{"sample_count", "integer", "per pixel", "16", ">= 1", ""},
+                        {"seed", "integer", "", "0", ">= 0", "another seed, other noise"},
+                        {"jitter", "boolean", "", "true", "", "accepted, without effect"}}});
+}
+
+void add_integrators(std::vector<PluginDescriptor>& all) {
+    all.push_back({"integrator",
+                   "path",
+                   "Path tracing with light sampling, polarized.",
+                   {{"max_depth", "integer", "", "-1", ">= -1", "segments of a path, 1 = emitters only, -1 = no limit"},
+                    {"rr_depth", "integer", "", "5", ">= 1", "segments before Russian roulette begins"},
+                    {"hide_emitters", "boolean", "", "false", "", "emitters do not show directly"}}});
+    all.push_back({"integrator", "stokes", "Wraps an integrator; every picture has Stokes components anyway.", {}});
+    all.push_back({"texture",
+                   "bitmap",
+                   "A picture as a reflectance.",
+                   {{"filename", "path", "", "", "", "the picture"},
+                    {"raw", "boolean", "", "false", "", "values are data, not sRGB"},
+                    {"to_uv", "transform", "", "identity", "", "of texture coordinates"}}});
+    all.push_back({"texture",
+                   "checkerboard",
+                   "Two reflectances in squares.",
+                   {{"color0", "spectrum", "", "0.4", "0 .. 1", ""},
+                    {"color1", "spectrum", "", "0.2", "0 .. 1", ""},
+                    {"to_uv", "transform", "", "identity", "", "of texture coordinates"}}});
+}
+
+std::vector<PluginDescriptor> build_registry() {
+    std::vector<PluginDescriptor> all = bsdf_descriptors();
+    add_shapes(all);
+    add_emitters(all);
+    add_camera(all);
+    add_integrators(all);
+    return all;
+}
+
+}  // namespace
+
+const std::vector<PluginDescriptor>& plugins() {
+    static const std::vector<PluginDescriptor> registry = build_registry();
+    return registry;
+}
+
+const PluginDescriptor& expect_plugin(const Properties& node) {
+    std::vector<std::string> names;
+    for (const PluginDescriptor& plugin : plugins()) {
+        if (plugin.category != node.category) continue;
+        if (plugin.name == node.type) return plugin;
+        names.push_back(plugin.name);
+    }
+    throw input_error(node.where, fmt::format("unknown {} \"{}\"", node.category, node.type), "",
+                      did_you_mean(node.type, names));
+}
+
+void expect_known_properties(const Properties& node) {
+    std::vector<std::string> names;
+    for (const ParameterDescriptor& parameter : expect_plugin(node).parameters) names.push_back(parameter.name);
+    node.expect_all_used(names);
+}
+
+}  // namespace patina::render

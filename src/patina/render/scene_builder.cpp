@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+
+#include "patina/core/error.h"
+#include "patina/render/plugins.h"
+#include "patina/render/scene.h"
+#include "patina/render/shape_builder.h"
+
+namespace patina::render {
+
+namespace {
+
+class SceneBuilder {
+  public:
+    SceneBuilder(const Properties& root, const SceneResources& resources)
+        : root_(root),
+          resources_(resources),
+          bsdf_builder_{&resources, [this](const std::shared_ptr<const Properties>& node) { return bsdf_index(node); },
+                        &scene_->notes} {}
+
+    std::shared_ptr<const Scene> build() {
+        scene_->matching = std::make_unique<const ColourMatching>();
+        build_camera();
+        if ((scene_->integrator_node = root_.only_child("integrator"))) build_integrator(*scene_->integrator_node);
+        for (const auto& node : root_.children_of("bsdf")) bsdf_index(node);
+        for (const auto& node : root_.children_of("shape")) build_shape(*node);
+        for (const auto& node : root_.children_of("emitter")) emitters_.push_back(build_emitter(*node, resources_));
+        root_.children_of("texture");  // named ones, built where they are referenced
+        root_.expect_all_used({"integrator", "sensor", "bsdf", "shape", "emitter", "texture"});
+        if (emitters_.empty())
+            throw input_error(root_.where, "the scene is dark", "it has no emitter",
+                              "add one, for instance \"constant\"");
+        scene_->geometry.needs_uv = any_texture(root_);
+        scene_->geometry.commit();
+        scene_->lights = Lights(std::move(emitters_), scene_->geometry);
+        return scene_;
+    }
+
+  private:
+    void build_camera() {
+        const auto sensors = root_.children_of("sensor");
+        if (sensors.empty()) throw input_error(root_.where, "the scene has no sensor");
+        const Properties& node = *sensors.front();
+        scene_->sensor_node = sensors.front();
+        if (const auto film = node.only_child("film"))
+            scene_->film = build_film(*film);
+        else
+            scene_->film.bin_edges_nm = FilmSettings::default_bins();
+        if (const auto sampler = node.only_child("sampler")) {
+            expect_plugin(*sampler);
+            const std::int64_t count = sampler->integer("sample_count", 16);
+            if (count < 1 || count > (1 << 30))
+                throw input_error(sampler->location_of("sample_count"), "sample_count out of range",
+                                  fmt::format("it is {}", count), "keep it at 1 or above");
+            scene_->samples_per_pixel = static_cast<int>(count);
+            scene_->seed = static_cast<std::uint64_t>(sampler->integer("seed", 0));
+            sampler->boolean("jitter", true);
+            expect_known_properties(*sampler);
+        }
+        build_sensor(node, scene_->film.width, scene_->film.height);
+        expect_known_properties(node);
+    }
+
+    int bsdf_index(const std::shared_ptr<const Properties>& node) {
+        if (const auto known = bsdf_of_node_.find(node.get()); known != bsdf_of_node_.end()) {
+            if (known->second < 0) throw input_error(node->where, fmt::format("bsdf \"{}\" contains itself", node->id));
+            return known->second;
+        }
+        bsdf_of_node_[node.get()] = -1;
+        Bsdf bsdf = build_bsdf(*node, bsdf_builder_);
+        scene_->bsdfs.push_back(std::move(bsdf));
+        return bsdf_of_node_[node.get()] = static_cast<int>(scene_->bsdfs.size()) - 1;
+    }
+
+    int default_bsdf() {
+        if (default_bsdf_ < 0) {
+            default_bsdf_ = static_cast<int>(scene_->bsdfs.size());
+            scene_->bsdfs.push_back({Diffuse{Texture(Spectrum(0.5f))}});
+        }
+        return default_bsdf_;
+    }
+
+    void build_shape(const Properties& node) {
+        const int index = append_shape(node, resources_, scene_->geometry);
+        const auto material = node.only_child("bsdf");
+        scene_->geometry.shapes[index].bsdf = material ? bsdf_index(material) : default_bsdf();
+        if (const auto emitter = node.only_child("emitter")) {
+            scene_->geometry.shapes[index].emitter = static_cast<int>(emitters_.size());
+            emitters_.push_back(AreaEmitter{index, build_area_radiance(*emitter)});
+        }
+        expect_known_properties(node);
+    }
+
+    static bool any_texture(const Properties& node) {
+        for (const auto& child : node.children)
+            if (child.node->category == "texture" || any_texture(*child.node)) return true;
+        return false;
+    }
+
+    const Properties& root_;
+    const SceneResources& resources_;
+    std::shared_ptr<Scene> scene_ = std::make_shared<Scene>();
+    BsdfBuilder bsdf_builder_;
+    std::map<const Properties*, int> bsdf_of_node_;  // -1 while being built
+    int default_bsdf_ = -1;
+    std::vector<Emitter> emitters_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Scene> build_scene(const Properties& root, const SceneResources& resources) {
+    return SceneBuilder(root, resources).build();
+}
+
+}  // namespace patina::render

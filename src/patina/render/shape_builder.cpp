@@ -1,0 +1,168 @@
+#include "patina/render/shape_builder.h"
+
+#include <fmt/format.h>
+
+#include "patina/core/error.h"
+#include "patina/render/plugins.h"
+
+namespace patina::render {
+
+namespace {
+
+Eigen::Matrix4d placement(const Properties& node) {
+    const Eigen::Matrix4d m = node.transform("to_world");
+    const double determinant = m.block<3, 3>(0, 0).determinant();
+    if (!m.allFinite() || determinant == 0)
+        throw input_error(node.location_of("to_world"),
+                          fmt::format("the transform of the {} is degenerate", node.type));
+    return m;
+}
+
+AnalyticShape sphere(const Properties& node) {
+    const Eigen::Matrix4d m = placement(node);
+    const Eigen::Matrix3d linear = m.block<3, 3>(0, 0);
+    const double scale = std::cbrt(std::abs(linear.determinant()));
+    if ((linear.transpose() * linear - scale * scale * Eigen::Matrix3d::Identity()).norm() > 1e-4 * scale * scale)
+        throw input_error(node.location_of("to_world"), "a sphere cannot be stretched or sheared",
+                          "the transform scales directions differently", "use a mesh for an ellipsoid");
+    const Eigen::Vector3d centre = node.vector("center", Eigen::Vector3d::Zero());
+    const double radius = scale * node.number("radius", 1.0);
+    if (!(radius > 0) || !std::isfinite(radius) || !centre.allFinite())
+        throw input_error(node.location_of("radius"), "radius of a sphere must be positive",
+                          fmt::format("it is {}", radius));
+    const Eigen::Vector3d world = (m * centre.homogeneous()).head<3>();
+    return AnalyticShape::sphere(world.cast<float>(), static_cast<float>(radius), (linear / scale).cast<float>());
+}
+
+// A face of the unit square at `centre` of the shape's own space, with its outside along half_u x half_v.
+AnalyticShape face(const Eigen::Matrix4d& m, AnalyticShape::Kind kind, const Eigen::Vector3d& centre,
+                   const Eigen::Vector3d& half_u, const Eigen::Vector3d& half_v, const SourceLocation& where) {
+    const Eigen::Matrix3d linear = m.block<3, 3>(0, 0);
+    const Eigen::Vector3d world = (m * centre.homogeneous()).head<3>();
+    const Eigen::Vector3d a = linear * half_u, b = linear * half_v;
+    if (!(a.cross(b).norm() > 1e-30)) throw input_error(where, "a face of the shape has no area");
+    AnalyticShape s = AnalyticShape::plane(kind, world.cast<float>(), a.cast<float>(), b.cast<float>());
+    // A mirroring transform turns the cross product over, not the outside.
+    s.flipped = linear.determinant() < 0;
+    return s;
+}
+
+std::vector<AnalyticShape> analytic_shapes(const Properties& node) {
+    using Kind = AnalyticShape::Kind;
+    using Eigen::Vector3d;
+    if (node.type == "sphere") return {sphere(node)};
+    const Eigen::Matrix4d m = placement(node);
+    if (node.type == "rectangle")
+        return {face(m, Kind::parallelogram, Vector3d::Zero(), Vector3d::UnitX(), Vector3d::UnitY(), node.where)};
+    if (node.type == "disk")
+        return {face(m, Kind::disk, Vector3d::Zero(), Vector3d::UnitX(), Vector3d::UnitY(), node.where)};
+    std::vector<AnalyticShape> faces;
+    for (int axis = 0; axis < 3; ++axis)
+        for (double side : {-1.0, 1.0}) {
+            const Vector3d u = Vector3d::Unit((axis + 1) % 3), v = side * Vector3d::Unit((axis + 2) % 3);
+            faces.push_back(face(m, Kind::parallelogram, side * Vector3d::Unit(axis), u, v, node.where));
+        }
+    return faces;
+}
+
+// Normals weighted by the angle of each corner (Thuermer & Wuethrich 1998).
+std::vector<Eigen::Vector3f> smooth_normals(const TriangleMesh& mesh) {
+    std::vector<Eigen::Vector3f> normals(mesh.positions.size(), Vec3::Zero());
+    for (const auto& t : mesh.triangles)
+        for (int corner = 0; corner < 3; ++corner) {
+            const Vec3 a = mesh.positions[t[(corner + 1) % 3]] - mesh.positions[t[corner]];
+            const Vec3 b = mesh.positions[t[(corner + 2) % 3]] - mesh.positions[t[corner]];
+            const Vec3 cross = a.cross(b);
+            const float length = cross.norm();
+            if (length > 0) normals[t[corner]] += cross / length * std::atan2(length, a.dot(b));
+        }
+    for (Vec3& n : normals) n = n.squaredNorm() > 0 ? Vec3(n.normalized()) : Vec3::UnitZ();
+    return normals;
+}
+
+void check_mesh(const TriangleMesh& mesh, const SourceLocation& where) {
+    const std::string what = fmt::format("mesh \"{}\"", mesh.name);
+    if (mesh.triangles.empty()) throw input_error(where, what + " has no triangles");
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+        if (!mesh.positions[i].allFinite())
+            throw input_error(where, fmt::format("{}: vertex {} is not finite", what, i));
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        for (std::uint32_t corner : mesh.triangles[i])
+            if (corner >= mesh.positions.size())
+                throw input_error(where, fmt::format("{}: triangle {} names vertex {}", what, i, corner),
+                                  fmt::format("there are {}", mesh.positions.size()));
+    if ((!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size()) ||
+        (!mesh.uvs.empty() && mesh.uvs.size() != mesh.positions.size()))
+        throw input_error(where, what + " has another number of normals or texture coordinates than of vertices");
+}
+
+void place_mesh(TriangleMesh& mesh, const Eigen::Matrix4d& m) {
+    if (m.isIdentity(0)) return;
+    const Eigen::Matrix3d linear = m.block<3, 3>(0, 0), for_normals = linear.inverse().transpose();
+    for (Vec3& p : mesh.positions) p = (linear * p.cast<double>() + m.block<3, 1>(0, 3)).cast<float>();
+    for (Vec3& n : mesh.normals) n = (for_normals * n.cast<double>()).normalized().cast<float>();
+    if (linear.determinant() < 0)
+        for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+}
+
+MeshShape mesh_shape(const Properties& node, const SceneResources& resources, float& area) {
+    const std::string file = node.string("filename");
+    const SourceLocation where = node.location_of("filename");
+    if (!resources.load_mesh) throw Error(ErrorKind::not_built, where.to_string() + ": mesh files are not available");
+    auto mesh = std::make_shared<TriangleMesh>(*resources.load_mesh(file, node.type));
+    check_mesh(*mesh, where);
+    node.boolean("flip_tex_coords", node.type == "obj");
+    if (node.boolean("face_normals", false))
+        mesh->normals.clear();
+    else if (mesh->normals.empty())
+        mesh->normals = smooth_normals(*mesh);
+    place_mesh(*mesh, placement(node));
+
+    // Drop triangles without area: nothing can hit them, and they have no normal.
+    std::vector<double> areas;
+    std::erase_if(mesh->triangles, [&](const auto& t) {
+        const Vec3 cross =
+            (mesh->positions[t[1]] - mesh->positions[t[0]]).cross(mesh->positions[t[2]] - mesh->positions[t[0]]);
+        if (!(cross.squaredNorm() > 0)) return true;
+        areas.push_back(0.5 * cross.norm());
+        return false;
+    });
+    if (areas.empty()) throw input_error(where, fmt::format("mesh \"{}\" has no area", mesh->name));
+    MeshShape shape;
+    shape.by_area = DiscreteDistribution(areas);
+    area = static_cast<float>(shape.by_area.total());
+    shape.mesh = std::move(mesh);
+    return shape;
+}
+
+}  // namespace
+
+int append_shape(const Properties& node, const SceneResources& resources, Geometry& geometry) {
+    expect_plugin(node);
+    const int index = static_cast<int>(geometry.shapes.size());
+    const bool flip = node.boolean("flip_normals", false);
+    Shape shape;
+    if (node.type == "obj" || node.type == "ply") {
+        MeshShape mesh = mesh_shape(node, resources, shape.area);
+        mesh.shape = index;
+        mesh.flipped = flip;
+        shape.is_mesh = true;
+        shape.first = static_cast<int>(geometry.meshes.size());
+        shape.count = 1;
+        geometry.meshes.push_back(std::move(mesh));
+    } else {
+        shape.first = static_cast<int>(geometry.analytic.size());
+        for (AnalyticShape& s : analytic_shapes(node)) {
+            s.shape = index;
+            s.flipped ^= flip;
+            shape.area += s.area;
+            geometry.analytic.push_back(s);
+        }
+        shape.count = static_cast<int>(geometry.analytic.size()) - shape.first;
+    }
+    if (!std::isfinite(shape.area)) throw input_error(node.where, "the shape is not finite");
+    geometry.shapes.push_back(shape);
+    return index;
+}
+
+}  // namespace patina::render
