@@ -25,18 +25,18 @@ Mueller mueller_of(Complex p, Complex s) {
 
 FresnelAmplitudes fresnel_amplitudes(double cos_i, Complex n1, Complex n2) {
     PATINA_EXPECT(cos_i >= 0.0 && cos_i <= 1.0);
-    const double sin2_i = 1.0 - cos_i * cos_i;
     const Complex ratio = n1 / n2;
 
-    // Choose the root whose wave decays into the second medium.
-    Complex cos_t = std::sqrt(1.0 - ratio * ratio * sin2_i);
+    // Choose the root whose wave decays into the second medium; written so that near grazing incidence nothing cancels.
+    Complex cos_t = std::sqrt((n2 - n1) * (n2 + n1) / (n2 * n2) + ratio * ratio * (cos_i * cos_i));
     if ((n2 * cos_t).imag() < 0.0) cos_t = -cos_t;
 
     const Complex p = n2 * cos_i + n1 * cos_t;
     const Complex s = n1 * cos_i + n2 * cos_t;
     // Grazing incidence on a matched medium is 0/0; nothing is reflected there.
     if (std::abs(p) == 0.0 || std::abs(s) == 0.0) return {0.0, 0.0, 1.0, 1.0, cos_t};
-    return {(n2 * cos_i - n1 * cos_t) / p, (n1 * cos_i - n2 * cos_t) / s, 2.0 * n1 * cos_i / p, 2.0 * n1 * cos_i / s, cos_t};
+    return {(n2 * cos_i - n1 * cos_t) / p, (n1 * cos_i - n2 * cos_t) / s, 2.0 * n1 * cos_i / p, 2.0 * n1 * cos_i / s,
+            cos_t};
 }
 
 Mueller fresnel_reflection(double cos_i, Complex n1, Complex n2) {
@@ -52,8 +52,9 @@ Mueller fresnel_transmission(double cos_i, double n1, double n2) {
 }
 
 double refracted_cosine(double cos_i, double n1, double n2) {
-    const double sin2_t = (n1 / n2) * (n1 / n2) * (1.0 - cos_i * cos_i);
-    return sin2_t < 1.0 ? std::sqrt(1.0 - sin2_t) : 0.0;
+    const double ratio = n1 / n2;
+    const double cos2_t = (n2 - n1) * (n2 + n1) / (n2 * n2) + ratio * ratio * cos_i * cos_i;
+    return cos2_t > 0.0 ? std::sqrt(cos2_t) : 0.0;
 }
 
 }  // namespace patina::optics

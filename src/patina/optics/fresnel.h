@@ -1,9 +1,9 @@
 #pragma once
 // Fresnel reflection and refraction at a smooth interface, complex refractive indices included.
 //
-// Amplitude coefficients refer to the directions p (in the plane of incidence) and s with the signs of docs/conventions.md:
-// r_p = (n2 c1 - n1 c2)/(n2 c1 + n1 c2), r_s = (n1 c1 - n2 c2)/(n1 c1 + n2 c2), time factor exp(-i w t),
-// c2 = +i |c2| under total reflection (Born & Wolf 1999, section 1.5). At normal incidence r_s = -r_p.
+// Amplitude coefficients refer to the directions p (in the plane of incidence) and s with the signs of
+// docs/conventions.md: r_p = (n2 c1 - n1 c2)/(n2 c1 + n1 c2), r_s = (n1 c1 - n2 c2)/(n1 c1 + n2 c2), time factor exp(-i
+// w t), c2 = +i |c2| under total reflection (Born & Wolf 1999, section 1.5). At normal incidence r_s = -r_p.
 
 #include <complex>
 
@@ -14,9 +14,9 @@ namespace patina::optics {
 using Complex = std::complex<double>;
 
 struct FresnelAmplitudes {
-    Complex r_p, r_s; // reflected / incident electric field
-    Complex t_p, t_s; // transmitted / incident electric field
-    Complex cos_t;    // cosine of the (complex) angle of refraction, Im(n2 cos_t) >= 0
+    Complex r_p, r_s;  // reflected / incident electric field
+    Complex t_p, t_s;  // transmitted / incident electric field
+    Complex cos_t;     // cosine of the (complex) angle of refraction, Im(n2 cos_t) >= 0
 };
 
 // From the medium n1 (the incident side) into n2, at cos_i in [0, 1].

@@ -1,0 +1,25 @@
+#pragma once
+// Scattering matrix <-> expansion coefficients.
+
+#include "patina/optics/scattering/expansion_coefficients.h"
+#include "patina/optics/scattering/scattering_matrix.h"
+
+namespace patina::optics {
+
+// The six elements at one angle.
+struct ScatteringElements {
+    double a1, a2, a3, a4, b1, b2;
+};
+
+// Coefficients by Gauss quadrature on the matrix' own nodes (de Haan, Bosma & Hovenier 1987, eqs 68-73), up to the
+// first order beyond which every coefficient stays below `tolerance`; at least order 2. Exact for matrices whose degree
+// is below the number of nodes. An alpha1[0] other than 1, from a matrix that is not normalised, is kept.
+ExpansionCoefficients expand(const ScatteringMatrix& matrix, double tolerance);
+
+// F at a cosine of the scattering angle.
+ScatteringElements evaluate(const ExpansionCoefficients& coefficients, double cosine);
+
+// Drops the orders beyond which every coefficient stays below `tolerance`; keeps at least order 2.
+void truncate(ExpansionCoefficients& coefficients, double tolerance);
+
+}  // namespace patina::optics
