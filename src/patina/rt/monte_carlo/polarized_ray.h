@@ -45,10 +45,12 @@ inline DoubleAngle double_angle(double x, double y, double inverse_square) {
 
 // Stokes vectors in the frame turned by the angle: p' = cos p + sin s.
 template <int columns>
-void rotate(StokesColumns<columns>& stokes, const DoubleAngle& turn) {
-    const Eigen::Matrix<double, 1, columns> q = stokes.row(1);
-    stokes.row(1) = turn.cosine * q + turn.sine * stokes.row(2);
-    stokes.row(2) = turn.cosine * stokes.row(2) - turn.sine * q;
+[[gnu::always_inline]] inline void rotate(StokesColumns<columns>& stokes, const DoubleAngle& turn) {
+    for (int c = 0; c < columns; ++c) {
+        const double q = stokes(1, c), u = stokes(2, c);
+        stokes(1, c) = turn.cosine * q + turn.sine * u;
+        stokes(2, c) = turn.cosine * u - turn.sine * q;
+    }
 }
 
 // An incoherent sum of diagonal Jones matrices diag(jp, js): pp = sum |jp|^2, ss = sum |js|^2, cross = sum jp js*.
@@ -58,20 +60,25 @@ struct Gain {
     Complex cross = 0.0;
 
     bool is_zero() const { return pp == 0.0 && ss == 0.0; }
+    // The same matrices once more, and `count` times.
+    friend Gain operator*(const Gain& a, const Gain& b) { return {a.pp * b.pp, a.ss * b.ss, a.cross * b.cross}; }
+    Gain power(double count) const { return {std::pow(pp, count), std::pow(ss, count), std::pow(cross, count)}; }
     static Gain of(Complex jp, Complex js) { return {std::norm(jp), std::norm(js), jp * std::conj(js)}; }
     friend Gain operator*(double factor, const Gain& g) { return {factor * g.pp, factor * g.ss, factor * g.cross}; }
 };
 
 // Ep Es* = (U - i V)/2 is multiplied by cross.
 template <int columns>
-void apply(const Gain& gain, StokesColumns<columns>& stokes) {
+[[gnu::always_inline]] inline void apply(const Gain& gain, StokesColumns<columns>& stokes) {
     const double mean = 0.5 * (gain.pp + gain.ss), half_difference = 0.5 * (gain.pp - gain.ss);
     const double re = gain.cross.real(), im = gain.cross.imag();
-    const Eigen::Matrix<double, 1, columns> i = stokes.row(0), u = stokes.row(2);
-    stokes.row(0) = mean * i + half_difference * stokes.row(1);
-    stokes.row(1) = half_difference * i + mean * stokes.row(1);
-    stokes.row(2) = re * u + im * stokes.row(3);
-    stokes.row(3) = re * stokes.row(3) - im * u;
+    for (int c = 0; c < columns; ++c) {
+        const double i = stokes(0, c), q = stokes(1, c), u = stokes(2, c), v = stokes(3, c);
+        stokes(0, c) = mean * i + half_difference * q;
+        stokes(1, c) = half_difference * i + mean * q;
+        stokes(2, c) = re * u + im * v;
+        stokes(3, c) = re * v - im * u;
+    }
 }
 
 }  // namespace patina::rt::monte_carlo

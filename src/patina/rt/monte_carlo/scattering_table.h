@@ -17,12 +17,14 @@ struct ScatteringElements {
 };
 
 template <int columns>
-void apply(const ScatteringElements& f, StokesColumns<columns>& stokes) {
-    const Eigen::Matrix<double, 1, columns> i = stokes.row(0), u = stokes.row(2);
-    stokes.row(0) = f.a1 * i + f.b1 * stokes.row(1);
-    stokes.row(1) = f.b1 * i + f.a2 * stokes.row(1);
-    stokes.row(2) = f.a3 * u + f.b2 * stokes.row(3);
-    stokes.row(3) = f.a4 * stokes.row(3) - f.b2 * u;
+[[gnu::always_inline]] inline void apply(const ScatteringElements& f, StokesColumns<columns>& stokes) {
+    for (int c = 0; c < columns; ++c) {
+        const double i = stokes(0, c), q = stokes(1, c), u = stokes(2, c), v = stokes(3, c);
+        stokes(0, c) = f.a1 * i + f.b1 * q;
+        stokes(1, c) = f.b1 * i + f.a2 * q;
+        stokes(2, c) = f.a3 * u + f.b2 * v;
+        stokes(3, c) = f.a4 * v - f.b2 * u;
+    }
 }
 
 // F at a cosine straight from the coefficients, by Legendre and Jacobi polynomials:
@@ -38,7 +40,7 @@ class ScatteringTable {
   public:
     explicit ScatteringTable(const optics::ExpansionCoefficients& coefficients, bool scalar = false);
 
-    ScatteringElements at(double cosine) const {
+    [[gnu::always_inline]] ScatteringElements at(double cosine) const {
         const double w = std::max(0.0, 1.0 - std::abs(cosine));
         const double u = std::sqrt(w) * cells_;
         const int cell = std::min(static_cast<int>(u), cells_ - 1);
@@ -50,7 +52,7 @@ class ScatteringTable {
     double sample_cosine(RandomStream& random) const;
 
   private:
-    ScatteringElements blend(int node, double t) const {
+    [[gnu::always_inline]] ScatteringElements blend(int node, double t) const {
         const Node &f = nodes_[static_cast<std::size_t>(node)], &g = nodes_[static_cast<std::size_t>(node) + 1];
         const auto mix = [t](double a, double b) { return a + t * (b - a); };
         return {mix(f.a1, g.a1), mix(f.a2, g.a2), mix(f.a3, g.a3),          mix(f.a4, g.a4),

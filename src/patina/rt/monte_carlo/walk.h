@@ -28,7 +28,7 @@ struct Packet {
     double tau;  // depth inside the layer
 };
 
-// Where the unscattered beam first collides, drawn in proportion to the intensity it loses there.
+// Where the unscattered beam first scatters, drawn in proportion to the intensity that does so there.
 template <int columns>
 class FirstCollision {
   public:
@@ -37,17 +37,17 @@ class FirstCollision {
         const SpecularStack::Beam beam = specular.beam();
         for (int l = 0; l < stack.size(); ++l)
             for (bool up : {false, true}) {
-                const double mu = specular.mu(l), absorbed = 1.0 - specular.transmission(l);
+                const double mu = specular.mu(l), albedo = stack.layers[static_cast<std::size_t>(l)].albedo;
                 const auto& gains = up ? beam.up_at_bottom : beam.down_at_top;
-                if (mu > 0.0) add({l, up, mu, absorbed, incident}, gains[static_cast<std::size_t>(l)]);
+                const double collided = mu > 0.0 ? -std::expm1(-stack.thickness(l) / mu) : 0.0;
+                add({l, up, mu, collided, albedo, incident}, gains[static_cast<std::size_t>(l)]);
             }
         const int last = stack.size() - 1;
-        if (stack.lambertian_reflectance() > 0.0)
-            add({-1, false, 1.0, specular.transmission(last), incident},
-                beam.down_at_top[static_cast<std::size_t>(last)]);
+        add({-1, false, 1.0, specular.transmission(last), stack.lambertian_reflectance(), incident},
+            beam.down_at_top[static_cast<std::size_t>(last)]);
     }
 
-    // Of an incident flux of I = 1 (first column), the part that collides at all.
+    // Of an incident flux of I = 1 (first column), the part that scatters at all.
     double power() const { return cumulative_.empty() ? 0.0 : cumulative_.back(); }
 
     // `xi` in (0, 1), which may be stratified, chooses both place and depth. layer = -1 stands for the Lambertian base.
@@ -60,8 +60,8 @@ class FirstCollision {
         const double fraction = std::clamp(target / (cumulative_[c] - (c > 0 ? cumulative_[c - 1] : 0.0)), 0.0, 1.0);
 
         // Depth from the truncated exponential.
-        Packet<columns> packet{meridian_frame(source.up ? source.mu : -source.mu, 1.0, 0.0), source.stokes, power(),
-                               source.layer, 0.0};
+        Packet<columns> packet{meridian_frame(source.up ? source.mu : -source.mu, 1.0, 0.0), source.stokes,
+                               power() / source.albedo, source.layer, 0.0};
         if (source.layer >= 0) {
             const double path = -source.mu * std::log1p(-fraction * source.collided);
             packet.tau = source.up ? stack_.thickness(source.layer) - path : path;
@@ -75,13 +75,15 @@ class FirstCollision {
         bool up;
         double mu;
         double collided;  // of the beam's flux at its entry
+        double albedo;    // of layer or base
         StokesColumns<columns> stokes;
     };
     void add(Source source, const Gain& gain) {
         apply(gain, source.stokes);
         const double intensity = source.stokes(0, 0);
-        if (!(intensity * source.collided > 0.0)) return;
-        cumulative_.push_back(power() + intensity * source.collided);
+        const double scattered = intensity * source.collided * source.albedo;
+        if (!(scattered > 0.0)) return;
+        cumulative_.push_back(power() + scattered);
         source.stokes /= intensity;
         sources_.push_back(source);
     }
@@ -99,9 +101,10 @@ class Walk {
     Walk(const Stack& stack, const std::vector<Cone>& cones, RandomStream& random, Sink& sink)
         : stack_(stack), cones_(cones), random_(random), sink_(sink) {}
 
-    void run(Packet<columns> packet) {
+    // `start_weight`: of the packet after its first scattering.
+    void run(const Packet<columns>& packet, double start_weight) {
         packet_ = packet;
-        start_weight_ = packet.weight;
+        start_weight_ = start_weight;
         bool alive = packet.layer >= 0 ? collide() : leave_lambertian();
         while (alive) alive = fly() && collide();
     }
@@ -196,6 +199,7 @@ class Walk {
     // To the next collision; false when the packet has left or was absorbed.
     bool fly() {
         double path = -std::log(random_.uniform());
+        if (!skip_guided_cycles(path)) return false;
         for (;;) {
             const bool up = packet_.frame.k.z() > 0.0;
             const double mu = std::max(std::abs(packet_.frame.k.z()), 1e-300);
@@ -211,6 +215,30 @@ class Walk {
                 return false;
             }
         }
+    }
+
+    // Light trapped between total reflection above and total reflection or a metal below may cross a thin layer
+    // millions of times before it scatters: takes all full cycles at once. False when the metal has absorbed it.
+    bool skip_guided_cycles(double& path) {
+        const double mu = std::abs(packet_.frame.k.z()), n = stack_.index(packet_.layer);
+        const double cycle = 2.0 * layer().thickness / mu;
+        const bool at_metal = packet_.layer + 1 == stack_.size();
+        if (!(path > 4.0 * cycle) || (at_metal && !stack_.has_metal())) return true;
+        const InterfaceGains top = stack_.interface(mu, n, stack_.index(packet_.layer - 1));
+        if (top.cos_t > 0.0) return true;
+        Gain bottom;
+        if (at_metal) {
+            bottom = stack_.mirror(mu);
+        } else {
+            const InterfaceGains gains = stack_.interface(mu, n, stack_.index(packet_.layer + 1));
+            if (gains.cos_t > 0.0) return true;
+            bottom = gains.reflect;
+        }
+        const double cycles = std::floor(path / cycle);
+        path -= cycles * cycle;
+        turn_to_meridian();
+        apply((top.reflect * bottom).power(cycles), packet_.stokes);
+        return normalize(1.0) && survives();
     }
 
     // At an interface: reflects or refracts with the probabilities of the packet's own polarization; false when it

@@ -13,6 +13,7 @@ namespace patina::rt {
 namespace {
 
 using namespace monte_carlo;
+using optics::Stokes;
 
 // Sums of a batch, divided by its number of packets.
 using Tally = Eigen::ArrayXd;
@@ -36,7 +37,8 @@ BatchMeans walk_batches(const Stack& stack, const std::vector<Cone>& cones, cons
             auto sink = make_sink(tally, random);
             Walk<columns, decltype(sink)> walk(stack, cones, random, sink);
             for (std::int64_t i = 0; i < packets; ++i)
-                walk.run(first.draw((static_cast<double>(i) + random.uniform()) / static_cast<double>(packets)));
+                walk.run(first.draw((static_cast<double>(i) + random.uniform()) / static_cast<double>(packets)),
+                         first.power());
         }
         sums[static_cast<std::size_t>(batch)] = tally / static_cast<double>(packets);
     });
@@ -49,7 +51,8 @@ BatchMeans walk_batches(const Stack& stack, const std::vector<Cone>& cones, cons
     return result;
 }
 
-// Adds Stokes vectors at fixed azimuths; the tally is [cone][azimuth][4].
+// Adds Stokes vectors, the last column, at fixed azimuths; the tally is [cone][azimuth][4].
+template <int columns>
 class AzimuthSink {
   public:
     AzimuthSink(Tally& tally, const std::vector<Eigen::Vector2d>& azimuths) : tally_(tally), azimuths_(azimuths) {}
@@ -58,7 +61,7 @@ class AzimuthSink {
     void each(std::size_t cone, const Gain& gain, const Radiance& radiance) {
         double* place = tally_.data() + 4 * cone * azimuths_.size();
         for (const Eigen::Vector2d& azimuth : azimuths_) {
-            StokesColumns<1> stokes = radiance(azimuth.x(), azimuth.y());
+            StokesColumns<1> stokes = radiance(azimuth.x(), azimuth.y()).template rightCols<1>();
             apply(gain, stokes);
             Eigen::Map<Eigen::Vector4d>{place} += stokes;
             place += 4;
@@ -155,12 +158,21 @@ Field MonteCarloSolver::field(const Problem& problem, const FieldRequest& reques
     std::vector<Eigen::Vector2d> azimuths;
     for (double phi : request.phi) azimuths.emplace_back(std::cos(phi), std::sin(phi));
 
+    // A Stokes vector that no light has (a column of a Mueller matrix) rides along with unpolarized light.
+    const auto walk = [&]<int columns>(const StokesColumns<columns>& incident) {
+        const FirstCollision<columns> first(stack, request.mu_i, incident);
+        const int batches = static_cast<int>(std::min<std::int64_t>(128, options.samples));
+        const auto values = static_cast<Eigen::Index>(4 * cones.size() * azimuths.size());
+        return walk_batches(stack, cones, first, options.samples, options.seed, batches, values,
+                            [&](Tally& tally, RandomStream&) { return AzimuthSink<columns>(tally, azimuths); });
+    };
+    const bool physical =
+        request.incident[0] > 0.0 && request.incident.tail<3>().norm() <= request.incident[0] * (1.0 + 1e-12);
+    StokesColumns<2> with_unpolarized;
+    with_unpolarized << Stokes(1, 0, 0, 0), request.incident;
+    BatchMeans result = physical ? walk(StokesColumns<1>(request.incident)) : walk(with_unpolarized);
+
     // A beam of flux pi through a plane normal to itself.
-    const FirstCollision<1> first(stack, request.mu_i, request.incident);
-    const int batches = static_cast<int>(std::min<std::int64_t>(128, options.samples));
-    const auto values = static_cast<Eigen::Index>(4 * cones.size() * azimuths.size());
-    BatchMeans result = walk_batches(stack, cones, first, options.samples, options.seed, batches, values,
-                                     [&](Tally& tally, RandomStream&) { return AzimuthSink(tally, azimuths); });
     result.mean *= std::numbers::pi * request.mu_i;
     result.standard_error *= std::numbers::pi * request.mu_i;
 

@@ -116,20 +116,19 @@ TEST(MonteCarlo, ReturnsAllLightFromAWhiteFurnace) {
         {1.0, {{0.5, 1.0, generic(), 1.33}, {0.3, 1.0, rayleigh(), 1.6}}, LambertianBase{1.0}}};
     for (const Problem& problem : furnaces) {
         const double mu0 = 0.7, n = problem.layers[0].refractive_index;
-        const math::Quadrature rule = math::gauss_legendre(12, 0, 1);
-        const Field field =
-            solve(problem, {mu0, {1, 0, 0, 0}, {0.0}, rule.nodes, {0, pi / 3, 2 * pi / 3, pi, 4 * pi / 3, 5 * pi / 3}},
-                  10'000);
+        const math::Quadrature rule = math::gauss_legendre(8, 0, 1);
+        // Four azimuths average all modes up to the order 3 of these expansions.
+        const Field field = solve(problem, {mu0, {1, 0, 0, 0}, {0.0}, rule.nodes, {0, pi / 2, pi, 3 * pi / 2}}, 2560);
         double flux = 0.0, error = 0.0;
-        for (std::size_t o = 0; o < 12; ++o)
-            for (std::size_t p = 0; p < 6; ++p) {
-                const double weight = 2 * pi / 6 * rule.weights[o] * rule.nodes[o];
+        for (std::size_t o = 0; o < 8; ++o)
+            for (std::size_t p = 0; p < 4; ++p) {
+                const double weight = 2 * pi / 4 * rule.weights[o] * rule.nodes[o];
                 flux += weight * field.upward[0][o][p][0];
                 error += weight * field.upward_error[0][o][p][0];
             }
         const double expected = mu0 * pi * optics::fresnel_transmission(mu0, 1.0, n)(0, 0);
         EXPECT_NEAR(flux / expected, 1.0, sigmas * error / expected + 1e-4);  // 1e-4: the quadrature near grazing
-        EXPECT_LT(error / expected, 0.02);
+        EXPECT_LT(error / expected, 0.03);
     }
 }
 
@@ -166,13 +165,13 @@ TEST(MonteCarlo, ReproducesRayleighTables) {
 // A plane cut through a layer changes nothing, at any level and direction, over a metal and under an interface.
 TEST(MonteCarlo, DoesNotSeeACutInALayerOverMetal) {
     const MetalBase aluminium{{0.96, 6.69}};
-    const FieldRequest request{0.5, {1, 0.3, 0.4, 0.2}, {0.0, 0.35, 0.6}, {0.2, 0.7, 1.0}, {0.4, 1.9, 3.0}};
+    const FieldRequest request{0.5, {1, 0.3, 0.4, 0.2}, {0.0, 0.35, 0.6}, {0.2, 0.7}, {0.4, 1.9}};
     const Problem whole{1.0, {{0.6, 0.9, generic(), 1.5}}, aluminium};
     const Problem cut{1.0, {{0.2, 0.9, generic(), 1.5}, {0.4, 0.9, generic(), 1.5}}, aluminium};
-    const Field a = solve(whole, request, 40'000, 1), b = solve(cut, request, 40'000, 2);
+    const Field a = solve(whole, request, 20'000, 1), b = solve(cut, request, 20'000, 2);
     for (std::size_t d = 0; d < 3; ++d)
-        for (std::size_t o = 0; o < 3; ++o)
-            for (std::size_t p = 0; p < 3; ++p) {
+        for (std::size_t o = 0; o < 2; ++o)
+            for (std::size_t p = 0; p < 2; ++p) {
                 const auto joint = [](const Stokes& x, const Stokes& y) -> Stokes {
                     return (x.array().square() + y.array().square()).sqrt();
                 };
@@ -183,6 +182,42 @@ TEST(MonteCarlo, DoesNotSeeACutInALayerOverMetal) {
                                     b.downward[d][o][p]),
                           sigmas);
             }
+}
+
+// A layer of index 1.5 between air and 1.2 guides light beyond 53 deg: at tau 1e-9 a ray would cross it 1e9 times
+// between collisions. First order in tau, the light that leaves upward is the beam scattered once plus what the guide
+// collects and scatters on, all of it in time.
+TEST(MonteCarlo, IsNotStuckInAThinLightGuide) {
+    const FieldRequest request{0.6, {1, 0, 0, 0}, {0.0}, {0.5}, {0.7}};
+    const auto radiance = [&](double tau, std::uint64_t seed) {
+        const Problem guide{1.0, {{tau, 1.0, rayleigh(), 1.5}, {0.1, 0.0, rayleigh(), 1.2}}, BlackBase{}};
+        const Field field = solve(guide, request, 20'000, seed);
+        return std::pair<Stokes, Stokes>(field.upward[0][0][0] / tau, field.upward_error[0][0][0] / tau);
+    };
+    // Radiance per tau is the same at 1e-4 to a relative 1e-3 or so; the ratio of ray crossings is 1e5.
+    const auto [thin, thin_error] = radiance(1e-9, 1);
+    const auto [thick, thick_error] = radiance(1e-4, 2);
+    const Stokes joint = (thin_error.array().square() + thick_error.array().square()).sqrt();
+    EXPECT_LT(deviation(thin, joint + Stokes::Constant(2e-3 * thin[0]), thick), sigmas);
+    EXPECT_LT(joint[0], 0.05 * thin[0]);
+}
+
+// Columns of a Mueller matrix are fields of Stokes vectors that no light has; the field is linear in them.
+TEST(MonteCarlo, TakesAnyRealStokesVector) {
+    const Problem problem{1.0, {{0.8, 0.95, generic(), 1.5}}, LambertianBase{0.3}};
+    const auto run = [&](const Stokes& incident, std::uint64_t seed) {
+        const Field field = solve(problem, {0.5, incident, {0.0}, {0.7}, {0.4}}, 40'000, seed);
+        return std::pair<Stokes, Stokes>(field.upward[0][0][0], field.upward_error[0][0][0]);
+    };
+    for (int c = 1; c < 4; ++c) {
+        const Stokes unit = Stokes::Unit(c);
+        const auto [column, error] = run(unit, 1);
+        const auto [plus, plus_error] = run(Stokes::Unit(0) + unit, 2);
+        const auto [minus, minus_error] = run(Stokes::Unit(0) - unit, 3);
+        const Stokes joint =
+            (error.array().square() + 0.25 * plus_error.array().square() + 0.25 * minus_error.array().square()).sqrt();
+        EXPECT_LT(deviation(column, joint, 0.5 * (plus - minus)), sigmas) << c;
+    }
 }
 
 // Reversal of light paths, f(i, o) = D f(o, i)^T D, through three refractive indices and a metal: it ties the beam's
@@ -200,7 +235,7 @@ TEST(MonteCarlo, IsReciprocalInAMultiIndexStack) {
             const double in = way == 0 ? mu_a : mu_b, out = way == 0 ? mu_b : mu_a;
             const Field field =
                 solve(stack, {in, states[static_cast<std::size_t>(state)], {0.0}, {out}, {way == 0 ? phi : -phi}},
-                      40'000, 10 * way + static_cast<std::uint64_t>(state));
+                      20'000, 10 * way + static_cast<std::uint64_t>(state));
             f[way].col(state) = field.upward[0][0][0] / (pi * in);
             error[way].col(state) = field.upward_error[0][0][0] / (pi * in);
         }
