@@ -70,7 +70,7 @@ TEST_P(PaintSlab, AllStokesComponentsAgreeWithTheReference) {
         RecordProperty(std::string("rms_sigma_") + "IQUV"[c],
                        std::to_string(std::sqrt(d.sum_of_squares[c] / d.count[c])));
     }
-    EXPECT_LT(d.relative_error, 4e-3);  // else the comparison says nothing
+    EXPECT_LT(d.relative_error, 5e-3);  // else the comparison says nothing
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, PaintSlab, testing::Values('A', 'B'));

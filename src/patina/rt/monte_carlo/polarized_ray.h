@@ -6,6 +6,7 @@
 // Es*), V = -2 Im(Ep Es*), time factor exp(-i w t). z points up, out of the stack. The meridian frame has p = +e_theta,
 // s = -e_phi.
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 

@@ -1,5 +1,8 @@
 #include "patina/rt/monte_carlo/scattering_table.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "patina/core/contract.h"
 
 namespace patina::rt::monte_carlo {

@@ -1,5 +1,8 @@
 #include "patina/rt/monte_carlo/stack.h"
 
+#include <array>
+#include <cmath>
+
 namespace patina::rt::monte_carlo {
 
 InterfaceGains Stack::interface(double cos_i, double n1, double n2) const {

@@ -1,6 +1,10 @@
 #include "patina/rt/solvers/monte_carlo.h"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
+
+#include <fmt/format.h>
 
 #include "patina/core/contract.h"
 #include "patina/core/error.h"
@@ -112,7 +116,9 @@ SpecularStack::Level locate(const Problem& problem, double depth, bool up) {
     int last = -1;
     for (const Layer& layer : problem.layers) {
         ++last;
-        if (depth <= above + layer.optical_thickness) return {last, depth - above, up};
+        // Rounding must not put a level below its own layer, where nothing could be seen from the base.
+        if (depth <= above + layer.optical_thickness)
+            return {last, std::min(depth - above, layer.optical_thickness), up};
         above += layer.optical_thickness;
     }
     // Sums of layers may fall short by rounding.

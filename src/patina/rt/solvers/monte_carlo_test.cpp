@@ -108,6 +108,13 @@ TEST(MonteCarlo, ReproducesAnAbsorbingVarnishOverALambertianBase) {
     }
 }
 
+// 0.1 + 0.2 - 0.1 > 0.2 in floating point: a level at the very bottom still sees the base.
+TEST(MonteCarlo, SeesTheBaseFromTheBottomInSpiteOfRounding) {
+    const Problem problem{1.0, {{0.1, 0.0, rayleigh(), 1.0}, {0.2, 0.0, rayleigh(), 1.0}}, LambertianBase{0.5}};
+    const Field field = solve(problem, {0.5, {1, 0, 0, 0}, {0.1 + 0.2}, {0.4}, {0.0}}, 128);
+    EXPECT_NEAR(field.upward[0][0][0][0], 0.5 * 0.5 * std::exp(-0.3 / 0.5), 1e-12);  // closed form, no randomness left
+}
+
 // Nothing absorbs: what the interface does not reflect at once comes out diffusely. Flux by quadrature over exact
 // directions (their errors are correlated: added, not squared).
 TEST(MonteCarlo, ReturnsAllLightFromAWhiteFurnace) {
