@@ -59,7 +59,8 @@ Deviations compare(char test_case, const rt::SolveOptions& options) {
 }
 
 // 100 values, each normal: the largest of them exceeds 4.5 sigma with probability 100 x 7e-6 = 7e-4 in a fresh seed;
-// the seed is fixed. Power: with b2 of the wrong sign, V of case B would be off by 2 V, hundreds of sigma.
+// the seed is fixed. Power, measured at 200 000 packets with b2 of the wrong sign: V is off by 29 sigma in case A, 33
+// in case B, while I, Q and U stay below 2.5.
 class PaintSlab : public testing::TestWithParam<char> {};
 
 TEST_P(PaintSlab, AllStokesComponentsAgreeWithTheReference) {
