@@ -2,6 +2,7 @@
 #include "patina/rt/solver.h"
 #include "patina/rt/solvers/doubling.h"
 #include "patina/rt/solvers/eigenmodes.h"
+#include "patina/rt/solvers/monte_carlo.h"
 
 namespace patina::rt {
 
@@ -10,6 +11,7 @@ const std::vector<std::unique_ptr<Solver>>& solvers() {
         std::vector<std::unique_ptr<Solver>> all;
         all.push_back(std::make_unique<Doubling>());
         all.push_back(std::make_unique<Eigenmodes>());
+        all.push_back(make_monte_carlo_solver());
         return all;
     }();
     return list;
