@@ -73,6 +73,10 @@ int run(int argc, char** argv) {
     add_global_options(program, session);
     cli::add_solve(program, session);
     cli::add_field(program, session);
+    cli::add_render(program, session);
+    cli::add_plot(program, session);
+    cli::add_image(program, session);
+    cli::add_inspect(program, session);
     cli::add_check(program, session);
     cli::add_materials(program, session);
     cli::add_new(program, session);

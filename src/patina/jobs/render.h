@@ -19,8 +19,9 @@ struct RenderRequest {
     std::string command;                           // for provenance
 };
 
-// Files, materials and colour for the renderer. Recipes named by `paint` plugins are solved once each and kept.
-render::SceneResources scene_resources(const JobControl& control = {});
+// Files for the renderer; each is loaded, and each recipe solved, once. What was repaired in a mesh is said in `warnings`,
+// which must outlive the resources.
+render::SceneResources scene_resources(std::vector<std::string>& warnings, const JobControl& control = {});
 
 StokesImage render_scene(const RenderRequest& request, const JobControl& control = {});
 

@@ -1,0 +1,112 @@
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include "command.h"
+#include "patina/core/error.h"
+#include "patina/jobs/render.h"
+
+namespace patina::cli {
+
+namespace {
+
+struct Options {
+    std::string scene, output, integrator, time, size, crop;
+    std::vector<std::string> defines;
+    int samples = 0;
+    double noise = 0.0;
+    std::uint64_t seed = 0;
+    bool stokes_rgb = false, png = true;
+};
+
+// "90", "90s", "5m", "1h" in seconds.
+double parse_duration(const std::string& text) {
+    double value = 0.0;
+    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const std::string unit(end, text.data() + text.size());
+    const double factor = unit.empty() || unit == "s" ? 1.0 : unit == "m" ? 60.0 : unit == "h" ? 3600.0 : 0.0;
+    if (status != std::errc{} || factor == 0.0 || !(value > 0.0))
+        throw Error(ErrorKind::usage, fmt::format("--time {}: write 90s, 5m or 1h", text));
+    return value * factor;
+}
+
+std::pair<int, int> parse_size(const std::string& text) {
+    int width = 0, height = 0;
+    char cross = 0, rest = 0;
+    if (std::sscanf(text.c_str(), "%d%c%d%c", &width, &cross, &height, &rest) != 3 || cross != 'x' || width < 1 || height < 1 || width > 65536 || height > 65536)
+        throw Error(ErrorKind::usage, fmt::format("--size {}: write WIDTHxHEIGHT, as in 640x480", text));
+    return {width, height};
+}
+
+std::array<int, 4> parse_crop(const std::string& text) {
+    const std::vector<double> numbers = parse_number_list(text, "--crop");
+    if (numbers.size() != 4) throw Error(ErrorKind::usage, "--crop takes four pixels x0,y0,x1,y1");
+    std::array<int, 4> crop{};
+    for (int i = 0; i < 4; ++i) {
+        if (!(numbers[i] >= 0 && numbers[i] <= 65536)) throw Error(ErrorKind::usage, "--crop takes four pixels x0,y0,x1,y1");
+        crop[i] = static_cast<int>(numbers[i]);
+    }
+    return crop;
+}
+
+jobs::RenderRequest make_request(const Options& options, const CLI::App& command, const Session& session) {
+    jobs::RenderRequest request{options.scene, {}, {}, session.command_line};
+    for (const std::string& define : options.defines) {
+        const size_t equals = define.find('=');
+        if (equals == std::string::npos) throw Error(ErrorKind::usage, fmt::format("-D {}: write name=value", define));
+        request.variables[define.substr(0, equals)] = define.substr(equals + 1);
+    }
+    if (options.samples > 0) request.options.samples_per_pixel = options.samples;
+    if (!options.time.empty()) request.options.time_limit_seconds = parse_duration(options.time);
+    if (options.noise > 0.0) request.options.noise_target = options.noise;
+    if (!options.size.empty()) request.options.size = parse_size(options.size);
+    if (!options.crop.empty()) request.options.crop = parse_crop(options.crop);
+    if (!options.integrator.empty()) request.options.integrator = options.integrator;
+    if (command.count("--seed")) request.options.seed = options.seed;
+    return request;
+}
+
+int run(const Options& options, const CLI::App& command, Session& session) {
+    const jobs::RenderRequest request = make_request(options, command, session);
+    jobs::check_picture_output(options.output);
+    const StokesImage image = jobs::render_scene(request, session.control());
+    const std::vector<std::string> written = jobs::write_picture(options.output, image, options.stokes_rgb, options.png);
+
+    Console& console = session.console;
+    console.end_progress();
+    const auto meta = [&](const char* key) { return image.metadata.count(key) ? image.metadata.at(key) : std::string(); };
+    for (const auto& [key, value] : image.metadata)
+        if (key.starts_with("warning")) console.note("warning: " + value);
+    console.result(fmt::format("{}: {} x {} pixels", options.output, image.width, image.height));
+    nlohmann::json document = {{"schema", "patina/render/1"}, {"written", written}, {"width", image.width}, {"height", image.height}, {"metadata", image.metadata}};
+    console.document(document);
+    if (meta("stopped") == "yes") {
+        console.note("stopped early: the picture holds the passes that were done");
+        return static_cast<int>(ErrorKind::interrupted);
+    }
+    console.hint(fmt::format("patina image dolp {} -o dolp.png", options.output));
+    return 0;
+}
+
+}  // namespace
+
+void add_render(CLI::App& program, Session& session) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command = program.add_subcommand("render", "render a Mitsuba 3 scene with full polarization into a spectral Stokes EXR (and a PNG beside it)");
+    command->add_option("scene", options->scene, "scene (Mitsuba 3 XML)")->required();
+    command->add_option("-o,--output", options->output, "picture to write (.exr)")->required();
+    command->add_option("--integrator", options->integrator, "in place of the scene's");
+    command->add_option("--spp", options->samples, "samples per pixel")->check(CLI::Range(1, 1 << 24));
+    command->add_option("--time", options->time, "stop after this time: 90s, 5m, 1h");
+    command->add_option("--noise", options->noise, "stop at this relative noise, as in 0.01")->check(CLI::Range(1e-6, 1.0));
+    command->add_option("--size", options->size, "film size WIDTHxHEIGHT");
+    command->add_option("--crop", options->crop, "window of pixels x0,y0,x1,y1");
+    command->add_option("--seed", options->seed, "seed of the random numbers; the same seed gives the same bits");
+    command->add_option("-D,--define", options->defines, "set a <default> of the scene: name=value (repeatable)")->take_all()->allow_extra_args(false);
+    command->add_flag("--stokes-rgb", options->stokes_rgb, "write Mitsuba's S0.R ... S3.B channels");
+    command->add_flag("!--no-png", options->png, "do not write a PNG beside the EXR");
+    command->footer("example: patina render examples/painted_spheres.xml -o spheres.exr --spp 64");
+    command->callback([options, command, &session] { session.chosen = [options, command, &session] { return run(*options, *command, session); }; });
+}
+
+}  // namespace patina::cli

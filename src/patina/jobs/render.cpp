@@ -1,0 +1,117 @@
+#include "patina/jobs/render.h"
+
+#include <mutex>
+
+#include <fmt/format.h>
+
+#include "patina/core/error.h"
+#include "patina/core/files.h"
+#include "patina/io/bitmap_file.h"
+#include "patina/io/image_tone.h"
+#include "patina/io/mesh_file.h"
+#include "patina/io/mitsuba_xml.h"
+#include "patina/io/png_file.h"
+#include "patina/io/stokes_exr.h"
+#include "patina/io/table_hdf5.h"
+#include "patina/jobs/solve.h"
+#include "patina/version.h"
+
+namespace patina::jobs {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// The spacing of wavelengths at which a scene's recipes are solved; bodies of paints vary slowly with wavelength.
+constexpr int recipe_step_nm = 10;
+
+std::shared_ptr<const brdf::MuellerTable> solve_recipe(const std::string& path, const JobControl& control) {
+    const coating::Recipe recipe = coating::read_recipe(path);
+    SolveRequest request;
+    if (!recipe.is_wavelength_independent())
+        for (int wavelength = 380; wavelength <= 780; wavelength += recipe_step_nm) request.wavelengths_nm.push_back(wavelength);
+    request.command = fmt::format("patina solve {} --wavelengths 380:780:{}", path, recipe_step_nm);
+    SolveResult result = solve(recipe, request, control);
+    if (result.interrupted) throw Error(ErrorKind::interrupted, fmt::format("stopped while solving {}", path));
+    return std::make_shared<const brdf::MuellerTable>(std::move(result.table));
+}
+
+std::shared_ptr<const brdf::MuellerTable> load_table(const std::string& path, const JobControl& control) {
+    const std::string extension = fs::path(path).extension().string();
+    if (extension == ".toml") return solve_recipe(path, control);
+    if (extension == ".h5") return std::make_shared<const brdf::MuellerTable>(io::read_table_hdf5(path));
+    throw input_error({path}, "neither a recipe nor a BRDF table", "recipes end in .toml, tables in .h5");
+}
+
+// Loads each file once, however many shapes and plugins name it.
+template <class Value>
+class Cache {
+  public:
+    template <class Load>
+    std::shared_ptr<const Value> get(const std::string& key, const Load& load) {
+        const std::lock_guard lock(mutex_);
+        std::shared_ptr<const Value>& value = values_[key];
+        if (!value) value = load();
+        return value;
+    }
+
+  private:
+    std::mutex mutex_;
+    std::map<std::string, std::shared_ptr<const Value>> values_;
+};
+
+}  // namespace
+
+render::SceneResources scene_resources(std::vector<std::string>& warnings, const JobControl& control) {
+    const auto tables = std::make_shared<Cache<brdf::MuellerTable>>();
+    const auto meshes = std::make_shared<Cache<TriangleMesh>>();
+    const auto bitmaps = std::make_shared<Cache<Bitmap>>();
+    render::SceneResources resources;
+    resources.load_brdf_table = [tables, control](const std::string& path) {
+        return tables->get(path, [&] { return load_table(path, control); });
+    };
+    resources.load_mesh = [meshes, &warnings](const std::string& path, const std::string& kind) {
+        return meshes->get(path, [&] {
+            io::MeshFile file = io::read_mesh(path, kind);
+            warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
+            return std::make_shared<const TriangleMesh>(std::move(file.mesh));
+        });
+    };
+    resources.load_bitmap = [bitmaps](const std::string& path, bool raw) {
+        return bitmaps->get(path + (raw ? "|raw" : ""), [&] { return std::make_shared<const Bitmap>(io::read_bitmap(path, raw)); });
+    };
+    return resources;
+}
+
+StokesImage render_scene(const RenderRequest& request, const JobControl& control) {
+    std::vector<std::string> warnings;
+    const std::shared_ptr<const Properties> tree = io::read_mitsuba_scene(request.scene, request.variables);
+    const std::shared_ptr<const render::Scene> scene = render::build_scene(*tree, scene_resources(warnings, control));
+    StokesImage image = render::render(*scene, request.options, control);
+    image.metadata["command"] = request.command;
+    image.metadata["scene"] = request.scene.string();
+    image.metadata["software"] = std::string("patina ") + PATINA_VERSION;
+    for (size_t i = 0; i < warnings.size(); ++i) image.metadata[fmt::format("warning_{:02}", i)] = warnings[i];
+    return image;
+}
+
+void check_picture_output(const fs::path& path) {
+    if (path.extension() != ".exr") throw Error(ErrorKind::usage, fmt::format("-o {}: the picture is an OpenEXR file, its name ends in .exr", path.string()));
+    expect_writable(path);
+}
+
+std::vector<std::string> write_picture(const fs::path& path, const StokesImage& image, bool stokes_rgb, bool png) {
+    io::StokesExrOptions options;
+    options.stokes_rgb = stokes_rgb;
+    io::write_stokes_exr(path, image, options);
+    std::vector<std::string> written{path.string()};
+    if (png) {
+        fs::path preview = path;
+        preview.replace_extension(".png");
+        io::write_png(preview, io::tone_map(image));
+        written.push_back(preview.string());
+    }
+    return written;
+}
+
+}  // namespace patina::jobs
