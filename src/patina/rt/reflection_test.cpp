@@ -149,7 +149,7 @@ TEST(Reflection, DoesNotDependOnHowALayerIsCut) {
 }
 
 // As the index approaches that of the medium above, the interface vanishes. At the most grazing node, mu = 0.009,
-// refraction by n - 1 = 1e-9 still changes mu by (n-1)/mu^2 = 1e-5 of itself, and the BRDF there is of the order of 10.
+// refraction by n - 1 = 1e-9 still changes mu by (n-1)/mu^2 = 1e-5 of itself, and the BRDF there is of the order of 1/(4 mu).
 TEST(Reflection, TendsToTheIndexMatchedOneAsTheInterfaceVanishes) {
     const auto x = physical_expansion(2);
     const auto solve = [&](double n) {
@@ -157,7 +157,7 @@ TEST(Reflection, TendsToTheIndexMatchedOneAsTheInterfaceVanishes) {
     };
     const Reflection matched = solve(1.0), nearly = solve(1.0 + 1e-9);
     for (std::size_t m = 0; m < std::min(matched.modes.size(), nearly.modes.size()); ++m)
-        EXPECT_LT((matched.modes[m] - nearly.modes[m]).cwiseAbs().maxCoeff(), 1e-4);
+        EXPECT_LT((matched.modes[m] - nearly.modes[m]).cwiseAbs().maxCoeff(), 1e-3);
 }
 
 // A zero-weight direction placed on a node must see what the node sees.
