@@ -12,9 +12,9 @@
 namespace patina::rt {
 namespace {
 
-using testing_problems::physical_expansion;
-using optics::Mueller;
 using Eigen::Vector3d;
+using optics::Mueller;
+using testing_problems::physical_expansion;
 
 // A ray with the basis of Bohren & Huffman: p in the meridian plane, s horizontal, s x p = k.
 struct Frame {
@@ -49,8 +49,8 @@ Mueller scattering_matrix(const optics::ExpansionCoefficients& x, double cosine)
     return f;
 }
 
-// The Mueller matrix that turns Stokes parameters from one transverse basis into another of the same ray: fields transform by
-// p' = p cos + s sin.
+// The Mueller matrix that turns Stokes parameters from one transverse basis into another of the same ray: fields
+// transform by p' = p cos + s sin.
 Mueller rotation(const Vector3d& p, const Vector3d& s, const Vector3d& new_p) {
     const double c = new_p.dot(p), n = new_p.dot(s), c2 = c * c - n * n, s2 = 2 * c * n;
     Mueller m;
@@ -67,8 +67,8 @@ Mueller phase_matrix(const optics::ExpansionCoefficients& x, const Frame& in, co
     return after * scattering_matrix(x, in.k.dot(out.k)) * before;
 }
 
-// One thin layer scatters once: L = albedo/(4 mu_o) tau F per unit flux of pi. Signs of Q, U, V, of the azimuth and of b2 all
-// stand or fall with this, because the right-hand side is made of vectors only.
+// One thin layer scatters once: L = albedo/(4 mu_o) tau F per unit flux of pi. Signs of Q, U, V, of the azimuth and of
+// b2 all stand or fall with this, because the right-hand side is made of vectors only.
 TEST(Kernel, ScattersOnceAsTheRotatedScatteringMatrix) {
     const auto expansion = physical_expansion(11, 6);
     const double tau = 1e-7, mu_i = 0.6;
@@ -84,8 +84,10 @@ TEST(Kernel, ScattersOnceAsTheRotatedScatteringMatrix) {
                 const Mueller down = phase_matrix(expansion, in, meridian(-mu_o[o], phi[p]));
                 // Second scattering adds a few tau of it.
                 const double single = tau / (4 * mu_o[o]);
-                EXPECT_LT((field.upward[0][o][p] / single - up.col(column)).norm(), 1e-5) << column << " " << o << " " << p;
-                EXPECT_LT((field.downward[1][o][p] / single - down.col(column)).norm(), 1e-5) << column << " " << o << " " << p;
+                EXPECT_LT((field.upward[0][o][p] / single - up.col(column)).norm(), 1e-5)
+                    << column << " " << o << " " << p;
+                EXPECT_LT((field.downward[1][o][p] / single - down.col(column)).norm(), 1e-5)
+                    << column << " " << o << " " << p;
             }
     }
 }
@@ -104,7 +106,8 @@ TEST(Kernel, IsConservativeOnEveryNodeSet) {
 }
 
 TEST(Nodes, IntegrateEveryHemisphereAndKeepFlux) {
-    const Problem problem{1.0, {{1.0, 1.0, physical_expansion(3), 1.5}, {1.0, 1.0, physical_expansion(3), 1.33}}, BlackBase{}};
+    const Problem problem{
+        1.0, {{1.0, 1.0, physical_expansion(3), 1.5}, {1.0, 1.0, physical_expansion(3), 1.33}}, BlackBase{}};
     const auto rays = quadrature_rays(problem, 12);
     for (double n : {1.0, 1.33, 1.5}) {
         const Medium medium = medium_of(rays, n);
@@ -113,8 +116,8 @@ TEST(Nodes, IntegrateEveryHemisphereAndKeepFlux) {
             flux += medium.weight(i) * medium.mu[i];
             solid += medium.weight(i);
         }
-        EXPECT_NEAR(flux, 0.5, 1e-14) << n;   // polynomials of degree 1 in each segment's own cosine
-        EXPECT_NEAR(solid, 1.0, 1e-9) << n;   // mu of another medium, analytic: converges as 5^(-2N)
+        EXPECT_NEAR(flux, 0.5, 1e-14) << n;  // polynomials of degree 1 in each segment's own cosine
+        EXPECT_NEAR(solid, 1.0, 1e-9) << n;  // mu of another medium, analytic: converges as 5^(-2N)
     }
 }
 

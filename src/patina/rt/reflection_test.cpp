@@ -149,7 +149,8 @@ TEST(Reflection, DoesNotDependOnHowALayerIsCut) {
 }
 
 // As the index approaches that of the medium above, the interface vanishes. At the most grazing node, mu = 0.009,
-// refraction by n - 1 = 1e-9 still changes mu by (n-1)/mu^2 = 1e-5 of itself, and the BRDF there is of the order of 1/(4 mu).
+// refraction by n - 1 = 1e-9 still changes mu by (n-1)/mu^2 = 1e-5 of itself, and the BRDF there is of the order of
+// 1/(4 mu).
 TEST(Reflection, TendsToTheIndexMatchedOneAsTheInterfaceVanishes) {
     const auto x = physical_expansion(2);
     const auto solve = [&](double n) {

@@ -1,7 +1,7 @@
+#include <limits>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <limits>
 
 #include "patina/core/error.h"
 #include "patina/rt/solver.h"
@@ -23,7 +23,8 @@ std::string complaint(const Problem& problem) {
 }
 
 TEST(Validate, RefusesWhatNatureRefuses) {
-    const Problem good{1.0, {{1.0, 0.9, physical_expansion(1), 1.5}, {2.0, 0.9, physical_expansion(2), 1.4}}, LambertianBase{0.3}};
+    const Problem good{
+        1.0, {{1.0, 0.9, physical_expansion(1), 1.5}, {2.0, 0.9, physical_expansion(2), 1.4}}, LambertianBase{0.3}};
     EXPECT_EQ(complaint(good), "");
     const double nan = std::nan("");
     const std::vector<std::pair<std::function<void(Problem&)>, std::string>> cases{
@@ -42,7 +43,10 @@ TEST(Validate, RefusesWhatNatureRefuses) {
         {[](Problem& p) { p.layers[0].refractive_index = 0.5; }, "refractive index"},
         {[](Problem& p) { p.refractive_index_above = 0.0; }, "above"},
         {[](Problem& p) { p.base = LambertianBase{1.5}; }, "reflectance 1.5"},
-        {[](Problem& p) { p.base = MetalBase{{1.0, -2.0}}; }, "base"}};
+        {[](Problem& p) {
+             p.base = MetalBase{{1.0, -2.0}};
+         },
+         "base"}};
     for (const auto& [spoil, word] : cases) {
         Problem bad = good;
         spoil(bad);

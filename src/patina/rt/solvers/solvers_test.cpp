@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
-
 #include <limits>
+
+#include <gtest/gtest.h>
 
 #include "patina/rt/kernel.h"
 #include "patina/rt/nodes.h"
@@ -17,8 +17,14 @@ using testing_problems::physical_expansion;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 TransferSystem<long double> widened(const TransferSystem<double>& s) {
-    return {s.h.cast<long double>(),    s.g.cast<long double>(),         s.signature.cast<long double>(), s.quadrature, s.views,
-            s.isotropic.cast<long double>(), s.flux.cast<long double>(), s.smallest_mu};
+    return {s.h.cast<long double>(),
+            s.g.cast<long double>(),
+            s.signature.cast<long double>(),
+            s.quadrature,
+            s.views,
+            s.isotropic.cast<long double>(),
+            s.flux.cast<long double>(),
+            s.smallest_mu};
 }
 
 // The same equations in 64-bit mantissas show what rounding does to the double ones.
@@ -26,23 +32,26 @@ TEST(TanhDoubling, AgreesWithExtendedPrecisionAtAlbedo1) {
     const Problem problem{1.0, {{1.0, 1.0, physical_expansion(1), 1.5}}, BlackBase{}};
     const Medium medium = medium_of(quadrature_rays(problem, 6), 1.5);
     const LayerKernel kernel(problem.layers[0], medium);
-    for (const auto& [m, components] : {std::pair{0, Components{0, 2}}, {0, Components{2, 2}}, {1, Components{0, 4}}, {5, Components{0, 4}}}) {
+    for (const auto& [m, components] :
+         {std::pair{0, Components{0, 2}}, {0, Components{2, 2}}, {1, Components{0, 4}}, {5, Components{0, 4}}}) {
         const TransferSystem<double> system = kernel.system(m, components);
         const auto wide = widened(system);
         for (double tau : {1e-6, 0.01, 1.0, 30.0, 1000.0, infinite}) {
             const auto a = tanh_doubling<double>(system, {tau, true});
             const auto b = tanh_doubling<long double>(wide, {tau, true});
             // 1e-13 is the distance from double's rounding after some 30 steps; 1e-11 is what users are promised.
-            EXPECT_LT((a.reflection.cast<long double>() - b.reflection).cwiseAbs().maxCoeff(), 1e-12L) << m << " " << tau;
+            EXPECT_LT((a.reflection.cast<long double>() - b.reflection).cwiseAbs().maxCoeff(), 1e-12L)
+                << m << " " << tau;
             if (tau < infinite) {
-                EXPECT_LT((a.transmission.cast<long double>() - b.transmission).cwiseAbs().maxCoeff(), 1e-12L) << m << " " << tau;
+                EXPECT_LT((a.transmission.cast<long double>() - b.transmission).cwiseAbs().maxCoeff(), 1e-12L)
+                    << m << " " << tau;
             }
         }
     }
 }
 
-// The start (continued fraction of a layer within reach) against one a thousand times thinner, both in long double: what the
-// choice of the number of doublings costs.
+// The start (continued fraction of a layer within reach) against one a thousand times thinner, both in long double:
+// what the choice of the number of doublings costs.
 TEST(TanhDoubling, StartsAccuratelyEnough) {
     const Problem problem{1.0, {{1.0, 0.95, physical_expansion(2), 1.0}}, BlackBase{}};
     const Medium medium = medium_of(quadrature_rays(problem, 8), 1.0);
@@ -50,7 +59,8 @@ TEST(TanhDoubling, StartsAccuratelyEnough) {
     TransferSystem<long double> careful = system;
     careful.smallest_mu = system.smallest_mu / 1000;
     for (double tau : {0.001, 0.03, 0.3, 1.0, 10.0}) {
-        const auto a = tanh_doubling<long double>(system, {tau, true}), b = tanh_doubling<long double>(careful, {tau, true});
+        const auto a = tanh_doubling<long double>(system, {tau, true}),
+                   b = tanh_doubling<long double>(careful, {tau, true});
         EXPECT_LT((a.reflection - b.reflection).cwiseAbs().maxCoeff(), 1e-15L) << tau;
         EXPECT_LT((a.transmission - b.transmission).cwiseAbs().maxCoeff(), 1e-15L) << tau;
     }
@@ -61,7 +71,8 @@ TEST(TanhDoubling, ThickLayerTendsToTheSemiInfiniteOne) {
     const Problem problem{1.0, {{1.0, 0.95, physical_expansion(2), 1.0}}, BlackBase{}};
     const Medium medium = medium_of(quadrature_rays(problem, 8), 1.0);
     const auto system = LayerKernel(problem.layers[0], medium).system(0, {0, 2});
-    const auto thick = tanh_doubling<double>(system, {500.0, true}), all = tanh_doubling<double>(system, {infinite, true});
+    const auto thick = tanh_doubling<double>(system, {500.0, true}),
+               all = tanh_doubling<double>(system, {infinite, true});
     EXPECT_LT((thick.reflection - all.reflection).cwiseAbs().maxCoeff(), 1e-13);
     EXPECT_EQ(all.transmission.size(), 0);
 }
@@ -106,7 +117,9 @@ TEST(Eigenmodes, AgreeWithDoubling) {
         {1.0, {{1.0, 0.9999, physical_expansion(1), 1.0}}, BlackBase{}},
         {1.0, {{0.7, 0.9, physical_expansion(2), 1.5}}, MetalBase{{0.96, 6.69}}},
         {1.0, {{30.0, 0.99, physical_expansion(3), 1.5}}, LambertianBase{0.5}},
-        {1.0, {{0.2, 0.9999, physical_expansion(4), 1.4}, {3.0, 0.5, physical_expansion(5), 1.6}}, MetalBase{{0.2, 3.0}}},
+        {1.0,
+         {{0.2, 0.9999, physical_expansion(4), 1.4}, {3.0, 0.5, physical_expansion(5), 1.6}},
+         MetalBase{{0.2, 3.0}}},
         {1.0, {{infinite, 0.8, physical_expansion(6), 1.33}}, BlackBase{}},
         {1.33, {{1.0, 0.0, physical_expansion(6), 1.5}, {1.0, 0.9, physical_expansion(7), 1.2}}, LambertianBase{1.0}}};
     const SolveOptions options{.streams = 8, .fourier_tolerance = 0.0};
@@ -122,7 +135,8 @@ TEST(Eigenmodes, AgreeWithDoubling) {
 TEST(Eigenmodes, AgreeWithDoublingInsideTheStack) {
     const Problem problem{
         1.0, {{0.4, 0.99, physical_expansion(4), 1.4}, {2.0, 0.5, physical_expansion(5), 1.6}}, MetalBase{{0.2, 3.0}}};
-    const FieldRequest request{0.6, {1, 0.3, -0.2, 0.4}, {0.0, 0.2, 0.4, 1.0, 2.4}, {0.0, 0.3, 0.6, 1.0}, {0.0, 0.9, 3.0}};
+    const FieldRequest request{
+        0.6, {1, 0.3, -0.2, 0.4}, {0.0, 0.2, 0.4, 1.0, 2.4}, {0.0, 0.3, 0.6, 1.0}, {0.0, 0.9, 3.0}};
     const Field a = solver_named("doubling").field(problem, request, {.streams = 6});
     const Field b = solver_named("eigenmodes").field(problem, request, {.streams = 6});
     for (std::size_t d = 0; d < 5; ++d)

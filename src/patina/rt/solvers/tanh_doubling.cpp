@@ -62,9 +62,9 @@ void double_thickness(TanhCoth<Scalar>& t, const TransferSystem<Scalar>& system,
     }
 }
 
-// Doublings that bring the start within reach. The start's relative error is 1e-7 (z 2^-k)^10 for a mode of half thickness z,
-// of which a layer shows z/sinh 2z, most at z = 5.5; and the doubling contracts whatever error the saturated modes of larger z
-// have if they start below z = 3.
+// Doublings that bring the start within reach. The start's relative error is 1e-7 (z 2^-k)^10 for a mode of half
+// thickness z, of which a layer shows z/sinh 2z, most at z = 5.5; and the doubling contracts whatever error the
+// saturated modes of larger z have if they start below z = 3.
 int doublings(double half_thickness, double smallest_mu) {
     const double z = half_thickness / smallest_mu, worst = std::min(z, 5.5);
     const double error = 1e-7 * std::pow(worst, 10) * 2 * worst / std::sinh(2 * worst);
