@@ -20,6 +20,8 @@ struct Case {
     std::vector<Node> children = {};
 };
 
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
 // Every registered model with its defaults, and some with what is worth trying besides.
 std::vector<Case> cases() {
     const std::string ggx = "ggx", gold = "Au", table = "layer.h5";
@@ -43,7 +45,7 @@ class EveryBsdf : public testing::TestWithParam<Case> {
     void SetUp() override {
         resources_.load_brdf_table = [](const std::string&) {
             return std::make_shared<brdf::MuellerTable>(brdf::tabulate(
-                brdf::single_rayleigh_body(1.0), {.wavelengths_nm = {400, 700}, .nodes = 12, .orders = 3}));
+                brdf::single_rayleigh_body(1.0), {.wavelengths_nm = {400, 700}, .nodes = 32, .orders = 3}));
         };
         builder_.resources = &resources_;
         builder_.notes = &notes_;
