@@ -1,8 +1,8 @@
 #include "patina/render/stokes_frames.h"
 
-#include <gtest/gtest.h>
-
 #include <complex>
+
+#include <gtest/gtest.h>
 
 #include "patina/brdf/half_angle_table.h"
 #include "patina/brdf/tabulate.h"
@@ -25,8 +25,8 @@ Vec3 direction(double theta_deg, double phi_deg) {
         .cast<float>();
 }
 
-// The Mueller matrix of fields (E_x, E_y) -> J (E_x, E_y) in right-handed frames, by the definition of the renderer's Stokes
-// parameters: column s is what comes out for coherence matrices that carry the s-th parameter alone.
+// The Mueller matrix of fields (E_x, E_y) -> J (E_x, E_y) in right-handed frames, by the definition of the renderer's
+// Stokes parameters: column s is what comes out for coherence matrices that carry the s-th parameter alone.
 Mueller mueller_of_jones(const Eigen::Matrix2cd& jones) {
     const Complex i(0, 1);
     Eigen::Matrix2cd basis[4];
@@ -37,7 +37,8 @@ Mueller mueller_of_jones(const Eigen::Matrix2cd& jones) {
     Mueller m;
     for (int s = 0; s < 4; ++s) {
         const Eigen::Matrix2cd c = jones * basis[s] * jones.adjoint();
-        m.col(s) = Stokes((c(0, 0) + c(1, 1)).real(), (c(0, 0) - c(1, 1)).real(), 2 * c(0, 1).real(), 2 * c(0, 1).imag());
+        m.col(s) =
+            Stokes((c(0, 0) + c(1, 1)).real(), (c(0, 0) - c(1, 1)).real(), 2 * c(0, 1).real(), 2 * c(0, 1).imag());
     }
     return m;
 }
@@ -50,14 +51,15 @@ Eigen::Matrix2cd dipole(const Vec3& k_in, const Vec3& x_in, const Vec3& k_out, c
 }
 
 TEST(StokesFrames, LightAlongXLooksDiagonalInATurnedFrame) {
-    // Seen in a frame turned by +45 degrees, light along x vibrates along -45 degrees (Mitsuba 3, polarization chapter).
+    // Seen in a frame turned by +45 degrees, light along x vibrates along -45 degrees (Mitsuba 3, polarization
+    // chapter).
     const Vec3 k = Vec3::UnitZ(), x = Vec3::UnitX(), turned = Vec3(1, 1, 0).normalized();
     const Stokes seen = rotator(rotation_between(k, x, turned)) * Stokes(1, 1, 0, 0);
     EXPECT_LT((seen - Stokes(1, 0, -1, 0)).norm(), 1e-6);  // float frames
 }
 
-// A small sphere scatters the field E into E - k (k.E). The solver's Rayleigh matrix after the bridge must be that of the
-// fields in the renderer's frames: this fixes the sign of U, for every pair of directions.
+// A small sphere scatters the field E into E - k (k.E). The solver's Rayleigh matrix after the bridge must be that of
+// the fields in the renderer's frames: this fixes the sign of U, for every pair of directions.
 TEST(StokesFrames, BridgeGivesDipoleScatteringOfFields) {
     for (auto [i, o] : {std::pair{direction(45, 180), direction(20, 90)},
                         {direction(70, 30), direction(60, -100)},
@@ -70,7 +72,8 @@ TEST(StokesFrames, BridgeGivesDipoleScatteringOfFields) {
     }
 }
 
-// V needs phases: reflection by a metal and total reflection, from complex amplitudes of fields along s and p, p = s x k.
+// V needs phases: reflection by a metal and total reflection, from complex amplitudes of fields along s and p, p = s x
+// k.
 TEST(StokesFrames, FresnelPacketsAreThoseOfFields) {
     for (double theta_deg : {10.0, 45.0, 75.0}) {
         const double cos_i = std::cos(radians(theta_deg));
@@ -80,9 +83,9 @@ TEST(StokesFrames, FresnelPacketsAreThoseOfFields) {
             Eigen::Matrix2cd jones;
             jones << amplitude.r_s, 0, 0, amplitude.r_p;
             const Mueller fields = mueller_of_jones(jones);
-            const FresnelPacket f =
-                index.imag() > 0 ? fresnel_conductor(cos_i, splat(index.real()), splat(index.imag()))
-                                 : fresnel_dielectric(cos_i, splat(index.real())).reflection;
+            const FresnelPacket f = index.imag() > 0
+                                        ? fresnel_conductor(cos_i, splat(index.real()), splat(index.imag()))
+                                        : fresnel_dielectric(cos_i, splat(index.real())).reflection;
             ScatteringMatrix packet;
             packet.set_fresnel(f.a, f.b, f.c, f.d, Vec3::UnitX(), Vec3::UnitX());
             // Single precision, and differences of nearly equal amplitudes.
@@ -117,9 +120,12 @@ TEST(PaintTable, GivesBackItsTableInTheFramesOfTheScatteringPlane) {
     const PaintTable compact(table);
     const Wavelengths w = Wavelengths::all_at(550);
     double largest = 0;
-    for (auto [i, o] : {std::pair{direction(45, 180), direction(20, 90)}, {direction(70, 30), direction(60, -100)},
-                        {direction(10, 200), direction(70, 215)}, {direction(33, 20), direction(5, 100)},
-                        {direction(50, 10), direction(50.5, 11)}, {direction(0, 0), direction(40, 77)}}) {
+    for (auto [i, o] : {std::pair{direction(45, 180), direction(20, 90)},
+                        {direction(70, 30), direction(60, -100)},
+                        {direction(10, 200), direction(70, 215)},
+                        {direction(33, 20), direction(5, 100)},
+                        {direction(50, 10), direction(50.5, 11)},
+                        {direction(0, 0), direction(40, 77)}}) {
         const Eigen::Vector3d id = i.cast<double>(), od = o.cast<double>();
         const brdf::DirectionPair pair{id, od, id.cross(od).normalized()};
         const Mueller expected =
