@@ -28,7 +28,8 @@ struct Bsdf;
 struct ShadingPoint {
     const Wavelengths* wavelengths = nullptr;
     Vec2 uv = Vec2::Zero();
-    const Bsdf* set = nullptr;  // the scene's models, for those that are made of others
+    const Bsdf* set = nullptr;       // the scene's models, for those that are made of others
+    bool unpolarized_light = false;  // evaluate() need not fill but the first column of a general matrix
 };
 
 struct BsdfSample {

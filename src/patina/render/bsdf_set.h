@@ -5,6 +5,8 @@
 #include "patina/render/bsdfs/conductor.h"
 #include "patina/render/bsdfs/dielectric.h"
 #include "patina/render/bsdfs/diffuse.h"
+#include "patina/render/bsdfs/paint.h"
+#include "patina/render/bsdfs/polarizer.h"
 #include "patina/render/bsdfs/rough_conductor.h"
 #include "patina/render/bsdfs/two_sided.h"
 
@@ -14,7 +16,8 @@ template <BsdfModel... Models>
 using BsdfVariant = std::variant<Models...>;
 
 struct Bsdf {
-    using Model = BsdfVariant<Diffuse, Dielectric, Conductor, RoughConductor, TwoSided>;
+    using Model = BsdfVariant<Diffuse, Dielectric, Conductor, RoughConductor, Paint, LinearPolarizer, Retarder,
+                              CircularPolarizer, TwoSided>;
     Model model;
 };
 

@@ -100,8 +100,8 @@ FilmSettings build_film(const Properties& node) {
 Film::Film(const FilmSettings& settings, const ColourMatching& matching)
     : settings_(settings), matching_(matching), bins_(static_cast<int>(settings.bin_edges_nm.size()) - 1) {
     PATINA_EXPECT(bins_ >= 1);
-    stride_ = 4 * bins_ + 12 + 4 + 2;
-    sums_.assign(pixel_count() * stride_, 0.0f);
+    stride_ = bins_ + 5;
+    sums_.assign(pixel_count() * stride_, splat(0));
     const std::vector<double>& edges = settings_.bin_edges_nm;
     for (int b = 0; b < bins_; ++b)
         bin_weight_.push_back(
@@ -117,10 +117,10 @@ Film::Film(const FilmSettings& settings, const ColourMatching& matching)
 double Film::relative_noise() const {
     double variance = 0, luminance = 0;
     for (std::size_t pixel = 0; pixel < pixel_count(); ++pixel) {
-        const float* colour = &sums_[pixel * stride_] + 4 * bins_;
-        const double n = colour[17], mean_y = colour[1] / n;
+        const Float4* colour = &sums_[pixel * stride_] + bins_;
+        const double n = colour[4][0], mean_y = colour[0][1] / n;
         luminance += mean_y;
-        variance += n > 1 ? std::max(0.0, colour[12] / n - mean_y * mean_y) / (n - 1) : INFINITY;
+        variance += n > 1 ? std::max(0.0, colour[0][3] / n - mean_y * mean_y) / (n - 1) : INFINITY;
     }
     const double pixels = static_cast<double>(pixel_count());
     return luminance > 0 ? std::sqrt(variance / pixels) / (luminance / pixels) : 0.0;
@@ -139,18 +139,19 @@ StokesImage Film::develop() const {
     image.variance.resize(pixels * 4);
     image.sample_count.resize(pixels);
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-        const float* sums = &sums_[pixel * stride_];
-        const float* colour = sums + 4 * bins_;
-        const float n = colour[17];
+        const Float4* sums = &sums_[pixel * stride_];
+        const Float4* colour = sums + bins_;
+        const float n = colour[4][0];
         if (n == 0) continue;
-        for (int i = 0; i < 4 * bins_; ++i) image.spectral[pixel * bins_ * 4 + i] = sums[i] / n;
-        for (int s = 0; s < 4; ++s) {
-            const Vec3 xyz = Vec3(colour[3 * s], colour[3 * s + 1], colour[3 * s + 2]) / n;
-            Eigen::Map<Vec3>(image.stokes_rgb(pixel) + 3 * s) = xyz_to_srgb(xyz);
-            const float spread_y = std::max(0.0f, colour[12 + s] / n - xyz.y() * xyz.y());
-            image.variance[pixel * 4 + s] = n > 1 ? spread_y / (n - 1) : 0.0f;
+        for (int b = 0; b < bins_; ++b)
+            for (int k = 0; k < 4; ++k) image.stokes(pixel, b)[k] = sums[b][k] / n;
+        for (int k = 0; k < 4; ++k) {
+            const Vec3 xyz = Vec3(colour[k][0], colour[k][1], colour[k][2]) / n;
+            Eigen::Map<Vec3>(image.stokes_rgb(pixel) + 3 * k) = xyz_to_srgb(xyz);
+            const float spread_y = std::max(0.0f, colour[k][3] / n - xyz.y() * xyz.y());
+            image.variance[pixel * 4 + k] = n > 1 ? spread_y / (n - 1) : 0.0f;
         }
-        image.alpha[pixel] = colour[16] / n;
+        image.alpha[pixel] = colour[4][1] / n;
         image.sample_count[pixel] = static_cast<std::uint32_t>(n);
     }
     return image;

@@ -50,27 +50,23 @@ class Film {
 
     // Adds one path: its Stokes vector at its four wavelengths.
     void add(std::size_t pixel, const StokesPacket& stokes, const Wavelengths& w, bool hit) {
-        float* sums = &sums_[pixel * stride_];
-        // The mean of four wavelengths estimates the integral over the visible range; each bin takes its share.
+        Float4* sums = &sums_[pixel * stride_];
+        const StokesPacket spectral = by_wavelength(stokes);
+        Float4 colour[4]{};
         for (int lane = 0; lane < wavelengths_per_path; ++lane) {
-            const int bin = bin_of_[w.node[lane]] + (w.nm[lane] >= upper_edge_[w.node[lane]] ? 1 : 0);
-            if (bin < 0 || bin >= bins_) continue;
-            float* cell = sums + 4 * bin;
-            for (int s = 0; s < 4; ++s) cell[s] += stokes[4 * s + lane] * bin_weight_[bin];
+            // The mean of four wavelengths estimates the integral over the visible range; each bin takes its share.
+            const int node = w.node[lane];
+            const int bin = bin_of_[node] + (w.nm[lane] >= upper_edge_[node] ? 1 : 0);
+            const Float4 s = stokes_row(spectral, lane);
+            if (bin >= 0 && bin < bins_) sums[bin] += s * bin_weight_[bin];
+            const Float4 xyz = 0.25f * matching_.xyz(node);
+            for (int component = 0; component < 4; ++component) colour[component] += xyz * s[component];
         }
-        const Float4 x = matching_.x.at(w), y = matching_.y.at(w), z = matching_.z.at(w);
-        float* colour = sums + 4 * bins_;
-        float* squares = colour + 12;
-        for (int s = 0; s < 4; ++s) {
-            const Float4 value = stokes_row(stokes, s);
-            const float luminance = mean(y * value);
-            colour[3 * s] += mean(x * value);
-            colour[3 * s + 1] += luminance;
-            colour[3 * s + 2] += mean(z * value);
-            squares[s] += luminance * luminance;
+        for (int component = 0; component < 4; ++component) {
+            colour[component][3] = colour[component][1] * colour[component][1];
+            sums[bins_ + component] += colour[component];
         }
-        squares[4] += hit ? 1.0f : 0.0f;
-        squares[5] += 1.0f;
+        sums[bins_ + 4] += Float4{1.0f, hit ? 1.0f : 0.0f, 0.0f, 0.0f};
     }
 
     // Root mean square over the pixels of the standard error of the luminance, over the picture's mean luminance.
@@ -83,7 +79,8 @@ class Film {
     const ColourMatching& matching_;
     int bins_;
     std::size_t stride_;
-    std::vector<float> sums_;        // [pixel][4 bins, 12 of XYZ per Stokes component, 4 squares of Y, hits, samples]
+    // [pixel][slot]: Stokes vector of each bin, (X, Y, Z, Y^2) of each Stokes component, (samples, hits, -, -).
+    std::vector<Float4> sums_;
     std::vector<float> bin_weight_;  // (visible range / number of wavelengths) / width of the bin
     std::vector<int> bin_of_;        // [nanometre] bin at the nanometre's start, -1 before the first
     std::vector<float> upper_edge_;  // [nanometre] where the next bin begins within this nanometre, or infinity

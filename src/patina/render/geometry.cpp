@@ -104,12 +104,14 @@ void Geometry::surface_of_triangle(const Hit& hit, SurfacePoint& point) const {
 }
 
 bool Geometry::sample_sphere(const AnalyticShape& sphere, const Vec3& from, const Vec2& u, ShapeSample& sample) const {
+    const float outside = sphere.flipped ? -1.0f : 1.0f;
     const Vec3 to_centre = sphere.o - from;
     const float distance2 = to_centre.squaredNorm(), radius2 = sphere.radius * sphere.radius;
     if (distance2 <= radius2 * 1.0001f) {
         // From inside: uniform over the area.
         sample.normal = uniform_sphere(u);
         sample.position = sphere.o + sphere.radius * sample.normal;
+        sample.normal *= outside;
         const Vec3 d = sample.position - from;
         const float cos = std::abs(d.dot(sample.normal));
         sample.pdf = cos > 0 ? d.squaredNorm() * d.norm() / (cos * sphere.area) : 0.0f;
@@ -125,6 +127,7 @@ bool Geometry::sample_sphere(const AnalyticShape& sphere, const Vec3& from, cons
     const float along = std::sqrt(distance2) * cos - safe_sqrt(radius2 - distance2 * sin2);
     sample.normal = (from + along * direction - sphere.o).normalized();
     sample.position = sphere.o + sphere.radius * sample.normal;
+    sample.normal *= outside;
     sample.pdf = 1 / (2 * pi_f * one_minus_cos_max);
     return true;
 }

@@ -32,6 +32,11 @@ inline Float4 stokes_row(const StokesPacket& s, int component) {
     return Float4{s[4 * component], s[4 * component + 1], s[4 * component + 2], s[4 * component + 3]};
 }
 
+// [wavelength][stokes]: the Stokes vector of each wavelength in four lanes beside each other.
+inline StokesPacket by_wavelength(const StokesPacket& s) {
+    return __builtin_shufflevector(s, s, 0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15);
+}
+
 inline StokesPacket make_stokes(Float4 i, Float4 q, Float4 u, Float4 v) {
     using Float8 = float __attribute__((vector_size(32)));
     const Float8 iq = __builtin_shufflevector(i, q, 0, 1, 2, 3, 4, 5, 6, 7);

@@ -51,14 +51,13 @@ SigmoidCoefficients sigmoid_coefficients(const Eigen::Vector3d& rgb) {
 }
 
 ColourMatching::ColourMatching() {
-    const double integral_nm = spectral::luminance_integral_nm(spectral::Observer::cie1931_2deg);
-    const auto component = [&](int i) {
-        return Spectrum([&, i](double nm) {
-            return spectral::colour_matching(spectral::Observer::cie1931_2deg, nm)[i] * wavelength_range_nm /
-                   integral_nm;
-        });
-    };
-    x = component(0), y = component(1), z = component(2);
+    using spectral::Observer;
+    const double scale = wavelength_range_nm / spectral::luminance_integral_nm(Observer::cie1931_2deg);
+    for (int node = 0; node < spectrum_nodes; ++node) {
+        const Eigen::Vector3d v =
+            scale * spectral::colour_matching(Observer::cie1931_2deg, wavelength_min_nm + node + 0.5);
+        rows_.push_back(Float4{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), 0.0f});
+    }
 }
 
 Eigen::Vector3f xyz_to_srgb(const Eigen::Vector3f& xyz) {

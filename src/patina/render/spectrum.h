@@ -86,10 +86,15 @@ inline Float4 sigmoid_reflectance(const SigmoidCoefficients& c, const Wavelength
 }
 
 // CIE 1931 colour matching functions, scaled so that radiance averaged over wavelength samples with uniform density on
-// the visible range gives XYZ with Y = 1 for the uniform unit spectrum.
-struct ColourMatching {
-    Spectrum x, y, z;
+// the visible range gives XYZ with Y = 1 for the uniform unit spectrum. One row a nanometre, that of its middle: what a
+// sample gains by interpolation within a nanometre is not seen after averaging.
+class ColourMatching {
+  public:
     ColourMatching();
+    Float4 xyz(int node) const { return rows_[node]; }  // (x, y, z, 0)
+
+  private:
+    std::vector<Float4> rows_;
 };
 
 // CIE XYZ to linear sRGB (IEC 61966-2-1, D65 white, no adaptation).

@@ -1,30 +1,29 @@
 #pragma once
 // The bridge between the solver's polarization convention and the renderer's, and rotations of Stokes frames.
 //
-// Both conventions refer a Stokes vector to a frame (x, y, k), right-handed, k along the propagation of light, with
-// Q = |E_x|^2 - |E_y|^2 and U = 2 Re(E_x E_y*). They differ in two points:
+// The renderer refers a Stokes vector to a frame (x, y, k), right-handed, k along the propagation of light; x is free
+// and kept with each matrix and each path. Q = |E_x|^2 - |E_y|^2, U = 2 Re(E_x E_y*) > 0 at +45 degrees from x towards
+// y, and V = 2 Im(E_x E_y*) for exp(-i w t): V > 0 is right circular, the field turns clockwise for who looks into the
+// source (Mitsuba 3's convention, SPIE's).
 //
-//   solver (optics/stokes.h):  x = e_theta, y = e_phi about the outward normal; V = -2 Im(E_x E_y*) for exp(-i w t),
-//                              V > 0 left circular, the field turns counter-clockwise for who looks into the source.
-//   renderer (Mitsuba 3):      x free, kept with each matrix and each path; V = +2 Im(E_x E_y*) for exp(-i w t),
-//                              V > 0 right circular, clockwise for who looks into the source.
-//
-// So the bridge is: rows and columns of V change their sign, and the solver's matrices act between the frames whose x
-// is e_theta. tests: stokes_frames_test.cpp (dipole scattering and Fresnel reflection from explicit electric fields).
+// The solver refers it to p = e_theta and s = -e_phi about the outward normal (or both reversed), s x p = k, with
+// U = 2 Re(E_p E_s*) and V = -2 Im(E_p E_s*) (Bohren & Huffman 1983; optics/stokes.h). With x = p that is y = -s: U
+// changes its sign, and V, whose sense of rotation is the same, does not. Tests: stokes_frames_test.cpp from explicit
+// fields, and against brdf/half_angle_table.h, which goes to Mitsuba's frames by another way.
 
 #include "patina/optics/stokes.h"
 #include "patina/render/vec.h"
 
 namespace patina::render {
 
-// A Mueller matrix of the solver in the renderer's signs, still between meridian frames.
+// A Mueller matrix of the solver in the renderer's signs, between frames whose x axes are e_theta.
 inline optics::Mueller from_solver(const optics::Mueller& m) {
-    const Eigen::Vector4d flip(1, 1, 1, -1);
+    const Eigen::Vector4d flip(1, 1, -1, 1);
     return flip.asDiagonal() * m * flip.asDiagonal();
 }
 
-// x of the solver's frame for light that travels along k: e_theta = d k / d theta about the axis z (the outward
-// normal). At the poles the meridian plane is that of azimuth 0.
+// e_theta = d k / d theta about the axis z (the outward normal), for light that travels along k. At the poles the
+// meridian plane is that of azimuth 0.
 inline Vec3 meridian_axis(const Vec3& k) {
     const float sin_theta = std::hypot(k.x(), k.y());
     if (sin_theta < 1e-7f) return {k.z() > 0 ? 1.0f : -1.0f, 0, 0};

@@ -38,24 +38,38 @@ void RayMatrix::add_to(Eigen::MatrixXd& dense, Components components) const {
         dense.block(entry.row * c, entry.column * c, c, c) += entry.mueller.block(first, first, c, c);
 }
 
+namespace {
+
+// Light totally reflected on both sides of a clear layer never leaves and never got in: 0/0. Taking 1e-14 from each
+// total reflection settles it, and is lost in rounding elsewhere.
+constexpr double total_reflection = 1.0 - 1e-14;
+
+}  // namespace
+
 Interface interface_between(const Medium& upper, const Medium& lower) {
     Interface result{{upper.size(), upper.size()},
                      {lower.size(), lower.size()},
                      {lower.size(), upper.size()},
                      {upper.size(), lower.size()}};
-    std::map<int, int> in_lower;
+    std::map<int, int> in_lower, in_upper;
     for (int i = 0; i < lower.size(); ++i) in_lower[lower.rays[i]] = i;
+    for (int i = 0; i < upper.size(); ++i) in_upper[upper.rays[i]] = i;
 
     for (int i = 0; i < upper.size(); ++i) {
-        result.reflection_above.add(i, i, turned(optics::fresnel_reflection(upper.mu[i], upper.index, lower.index)));
         const auto found = in_lower.find(upper.rays[i]);
+        const double kept = found == in_lower.end() ? total_reflection : 1.0;
+        result.reflection_above.add(i, i,
+                                    kept * turned(optics::fresnel_reflection(upper.mu[i], upper.index, lower.index)));
         if (found == in_lower.end()) continue;
         const int j = found->second;
         result.transmission_down.add(j, i, optics::fresnel_transmission(upper.mu[i], upper.index, lower.index));
         result.transmission_up.add(i, j, optics::fresnel_transmission(lower.mu[j], lower.index, upper.index));
     }
-    for (int j = 0; j < lower.size(); ++j)
-        result.reflection_below.add(j, j, turned(optics::fresnel_reflection(lower.mu[j], lower.index, upper.index)));
+    for (int j = 0; j < lower.size(); ++j) {
+        const double kept = in_upper.contains(lower.rays[j]) ? 1.0 : total_reflection;
+        result.reflection_below.add(j, j,
+                                    kept * turned(optics::fresnel_reflection(lower.mu[j], lower.index, upper.index)));
+    }
     return result;
 }
 

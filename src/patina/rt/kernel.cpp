@@ -3,7 +3,9 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "patina/core/contract.h"
+#include <fmt/format.h>
+
+#include "patina/core/error.h"
 #include "patina/math/wigner_d.h"
 
 namespace patina::rt {
@@ -43,8 +45,12 @@ LayerKernel::LayerKernel(const Layer& layer, const Medium& medium) : layer_(laye
     }
 
     // Let degree 0 take it up: b_i sum_j w_j b_j + defect_i = 1.
-    const double total = std::sqrt(weights.dot((1.0 - defect_i.array()).matrix()));
-    PATINA_EXPECT(std::isfinite(total) && total > 0.0);
+    const double square = weights.dot((1.0 - defect_i.array()).matrix());
+    if (!(square > 0.1))
+        throw input_error(SourceLocation{}, "too few streams for the phase function",
+                          fmt::format("its expansion of order {} does not integrate to 1 on {} nodes", order, n),
+                          fmt::format("take {} streams", order / 2 + 1));
+    const double total = std::sqrt(square);
     isotropic_i_ = (1.0 - defect_i.array()) / total;
     isotropic_q_ = -defect_q / total;
 }

@@ -44,7 +44,8 @@ class PathState {
 
     // Light of a lamp drawn at random, scattered here.
     void add_direct_light() {
-        const ShadingPoint shading = shading_point();
+        ShadingPoint shading = shading_point();
+        shading.unpolarized_light = true;
         if (!scene_.lights.any_sampled() || bsdf_is_delta(bsdf(), shading)) return;
         LightSample light;
         const float choice = sampler_.next();

@@ -2,33 +2,29 @@
 
 #include <type_traits>
 
-#include "patina/rt/solvers/signed_cholesky.h"
-
 namespace patina::rt {
 
 template <class Scalar>
-typename Arithmetic<Scalar>::Matrix Arithmetic<Scalar>::inverse(const Matrix& a) const {
+void Arithmetic<Scalar>::invert(Matrix& a) {
     if constexpr (std::is_same_v<Scalar, double>) {
-        SignedCholesky cholesky;
-        if (symmetric_ && cholesky.compute(a, signature_)) return cholesky.inverse();
+        if (symmetric_ && cholesky_.compute(a, signature_)) {
+            cholesky_.inverse(a);
+            return;
+        }
     }
-    return a.partialPivLu().inverse();
+    a = a.partialPivLu().inverse().eval();
 }
 
 template <class Scalar>
-typename Arithmetic<Scalar>::Matrix Arithmetic<Scalar>::parallel_difference(const Matrix& a, const Matrix& sum,
-                                                                            Scalar factor) const {
-    Matrix result;
+void Arithmetic<Scalar>::parallel_difference(Matrix& a, const Matrix& sum, Scalar factor) {
     if constexpr (std::is_same_v<Scalar, double>) {
-        SignedCholesky cholesky;
-        if (symmetric_ && cholesky.compute(sum, signature_)) {
-            cholesky.parallel_difference(a, factor, result);
-            return result;
+        if (symmetric_ && cholesky_.compute(sum, signature_)) {
+            cholesky_.parallel_difference(a, factor);
+            return;
         }
     }
-    result = factor * a;
-    result.noalias() -= (factor * a) * sum.partialPivLu().solve(a);
-    return result;
+    const Matrix share = a * sum.partialPivLu().solve(a);
+    a = factor * (a - share);
 }
 
 template class Arithmetic<double>;

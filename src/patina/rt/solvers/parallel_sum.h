@@ -3,6 +3,8 @@
 
 #include <Eigen/Dense>
 
+#include "patina/rt/solvers/signed_cholesky.h"
+
 namespace patina::rt {
 
 // For symmetric matrices of the signature of P the pivots of a factorization without exchanges have the signs of P
@@ -16,15 +18,16 @@ class Arithmetic {
 
     Arithmetic(const Vector& signature, bool symmetric) : signature_(signature), symmetric_(symmetric) {}
 
-    Matrix inverse(const Matrix& a) const;
-    // factor (a - a sum^-1 a), for factor 1 the parallel sum of a and sum - a.
-    Matrix parallel_difference(const Matrix& a, const Matrix& sum, Scalar factor) const;
-    // 1/(1/a + 1/b); either may be singular.
-    Matrix parallel_sum(const Matrix& a, const Matrix& b) const { return parallel_difference(a, a + b, 1); }
+    // a <- 1/a.
+    void invert(Matrix& a);
+    // a <- factor (a - a sum^-1 a): for factor 1 the parallel sum 1/(1/a + 1/b) of a and b = sum - a; either may be
+    // singular.
+    void parallel_difference(Matrix& a, const Matrix& sum, Scalar factor);
 
   private:
     const Vector& signature_;
     bool symmetric_;
+    SignedCholesky cholesky_;
 };
 
 }  // namespace patina::rt

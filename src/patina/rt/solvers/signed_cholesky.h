@@ -19,15 +19,17 @@ class SignedCholesky {
     bool compute(const Eigen::MatrixXd& s, const Eigen::VectorXd& signature);
 
     // The inverse of S.
-    Eigen::MatrixXd inverse() const;
-    // 2^exponent (a - a S^-1 a) for symmetric a; `factor` is 1 or 2.
-    void parallel_difference(const Eigen::MatrixXd& a, double factor, Eigen::MatrixXd& result) const;
+    void inverse(Eigen::MatrixXd& result);
+    // a <- factor (a - a S^-1 a) for symmetric a.
+    void parallel_difference(Eigen::MatrixXd& a, double factor);
 
   private:
-    // v L^-T in place; `upper`: v is upper triangular.
-    void solve_right(Eigen::MatrixXd& v, bool upper) const;
+    // solved_ <- solved_ L^-T; `upper`: it is upper triangular.
+    void solve_right(bool upper);
 
-    Eigen::MatrixXd l_, scaled_;                                 // L and L D; lower triangles
+    // Kept between calls, so that a layer is solved without allocations.
+    Eigen::MatrixXd l_, l_signed_;  // L and L D, lower triangles
+    Eigen::MatrixXd solved_, solved_signed_;
     std::vector<Eigen::Matrix<double, block, block>> inverses_;  // of the diagonal blocks of L
     Eigen::VectorXd d_;
 };

@@ -17,28 +17,41 @@ using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 template <class Scalar>
 struct TanhCoth {
     Matrix<Scalar> x, u;
+    Matrix<Scalar> sum;  // scratch
 };
 
 // Thin layer of half thickness h: the fifth convergent of tanh z = z/(1 + z^2/(3 + z^2/(5 + ...))), relative error
-// 1e-7 z^10, and its reciprocal. (a : b) is the parallel sum 1/(1/a + 1/b); e = h H may be singular, h G is not.
+// 1e-7 z^10, and its reciprocal. With (a : b) the parallel sum 1/(1/a + 1/b), e = h H (may be singular) and g = (h
+// G)^-1, X = (e : 3g + (e/5 : 7g + e/9)) and U = g + (e/3 : 5g + (e/7 : 9g)).
 template <class Scalar>
-TanhCoth<Scalar> thin_layer(const TransferSystem<Scalar>& system, Scalar h, const Arithmetic<Scalar>& arithmetic) {
+TanhCoth<Scalar> thin_layer(const TransferSystem<Scalar>& system, Scalar h, Arithmetic<Scalar>& arithmetic) {
+    const auto part = [](int k) { return Scalar(1) / Scalar(k); };
     const Matrix<Scalar> e = h * system.h;
-    const Matrix<Scalar> g = arithmetic.inverse(h * system.g);
-    const auto fraction = [&](int k, const Matrix<Scalar>& below) {
-        return arithmetic.parallel_sum(e / Scalar(k), below);
-    };
-    TanhCoth<Scalar> result;
-    result.x = fraction(1, 3 * g + fraction(5, 7 * g + e / Scalar(9)));
-    result.u = g + fraction(3, 5 * g + fraction(7, 9 * g));
-    return result;
+    Matrix<Scalar> g = h * system.g;
+    arithmetic.invert(g);
+    TanhCoth<Scalar> t;
+    t.x = part(5) * e;
+    t.sum = 7 * g + (part(9) + part(5)) * e;
+    arithmetic.parallel_difference(t.x, t.sum, 1);
+    t.sum = 3 * g + t.x + e;
+    t.x = e;
+    arithmetic.parallel_difference(t.x, t.sum, 1);
+
+    t.u = part(7) * e;
+    t.sum = 9 * g + t.u;
+    arithmetic.parallel_difference(t.u, t.sum, 1);
+    t.sum = 5 * g + t.u + part(3) * e;
+    t.u = part(3) * e;
+    arithmetic.parallel_difference(t.u, t.sum, 1);
+    t.u += g;
+    return t;
 }
 
 template <class Scalar>
-void double_thickness(TanhCoth<Scalar>& t, const TransferSystem<Scalar>& system, const Arithmetic<Scalar>& arithmetic) {
-    Matrix<Scalar> sum = t.x + t.u;
-    t.x = arithmetic.parallel_difference(t.x, sum, 2);
-    t.u = sum / 2;
+void double_thickness(TanhCoth<Scalar>& t, const TransferSystem<Scalar>& system, Arithmetic<Scalar>& arithmetic) {
+    t.sum = t.x + t.u;
+    arithmetic.parallel_difference(t.x, t.sum, 2);
+    t.u = Scalar(0.5) * t.sum;
 
     // Keep a conservative layer so: rounding errors of X isotropic = 0 and flux^T X = 0 would double with the
     // thickness.
@@ -49,12 +62,13 @@ void double_thickness(TanhCoth<Scalar>& t, const TransferSystem<Scalar>& system,
     }
 }
 
-// Doublings that bring the start within reach. The error of the start is 1e-7 z^10 for a mode of half thickness z 2^-k,
-// which matters for z < 6 only (thicker modes are saturated: z <= 0.28 at the start leaves 1e-16), and the doubling
-// contracts whatever error thicker modes have if they start below z = 3.
+// Doublings that bring the start within reach. The start's relative error is 1e-7 (z 2^-k)^10 for a mode of half
+// thickness z, of which a layer shows z/sinh 2z, most at z = 5.5; and the doubling contracts whatever error the
+// saturated modes of larger z have if they start below z = 3.
 int doublings(double half_thickness, double smallest_mu) {
-    const double z = half_thickness / smallest_mu;
-    const double steps = std::max(std::log2(std::min(z, 5.5) / 0.28), std::log2(z / 3.0));
+    const double z = half_thickness / smallest_mu, worst = std::min(z, 5.5);
+    const double error = 1e-7 * std::pow(worst, 10) * 2 * worst / std::sinh(2 * worst);
+    const double steps = std::max(std::log2(error / 1e-16) / 10, std::log2(z / 3.0));
     return std::max(0, static_cast<int>(std::ceil(steps)));
 }
 
@@ -69,7 +83,7 @@ void saturate_conservative(TanhCoth<Scalar>& t, const TransferSystem<Scalar>& sy
 }
 
 template <class Scalar>
-TanhCoth<Scalar> semi_infinite(const TransferSystem<Scalar>& system, const Arithmetic<Scalar>& arithmetic) {
+TanhCoth<Scalar> semi_infinite(const TransferSystem<Scalar>& system, Arithmetic<Scalar>& arithmetic) {
     constexpr int most_doublings = 80;
     TanhCoth<Scalar> t = thin_layer<Scalar>(system, Scalar(0.28) * Scalar(system.smallest_mu), arithmetic);
     for (int step = 0; step < most_doublings; ++step) {
@@ -87,9 +101,7 @@ template <class Scalar>
 TransferSystem<Scalar> padded(const TransferSystem<Scalar>& system, int size) {
     TransferSystem<Scalar> result = system;
     const int n = system.size();
-    for (auto* matrix : {&result.h, &result.g}) {
-        matrix->setIdentity(size, size);
-    }
+    for (auto* matrix : {&result.h, &result.g}) matrix->setIdentity(size, size);
     result.h.topLeftCorner(n, n) = system.h;
     result.g.topLeftCorner(n, n) = system.g;
     result.signature.setOnes(size);
@@ -105,7 +117,7 @@ TransferSystem<Scalar> padded(const TransferSystem<Scalar>& system, int size) {
 
 template <class Scalar>
 LayerOperators<Scalar> solve(const TransferSystem<Scalar>& system, const LayerRequest& request) {
-    const Arithmetic<Scalar> arithmetic(system.signature, system.symmetric());
+    Arithmetic<Scalar> arithmetic(system.signature, system.symmetric());
     const bool infinite = std::isinf(request.optical_thickness);
     TanhCoth<Scalar> t;
     if (infinite) {
@@ -120,11 +132,12 @@ LayerOperators<Scalar> solve(const TransferSystem<Scalar>& system, const LayerRe
     // In the signed matrices: reflection P = 1/(P + X) + 1/(P + U) - P, transmission P = 1/(P + X) - 1/(P + U).
     t.x.diagonal() += system.signature;
     t.u.diagonal() += system.signature;
-    const Matrix<Scalar> even = arithmetic.inverse(t.x), odd = arithmetic.inverse(t.u);
+    arithmetic.invert(t.x);
+    arithmetic.invert(t.u);
     LayerOperators<Scalar> result;
-    result.reflection = (even + odd) * system.signature.asDiagonal();
+    result.reflection = (t.x + t.u) * system.signature.asDiagonal();
     result.reflection.diagonal().array() -= Scalar(1);
-    if (request.transmission && !infinite) result.transmission = (even - odd) * system.signature.asDiagonal();
+    if (request.transmission && !infinite) result.transmission = (t.x - t.u) * system.signature.asDiagonal();
     return result;
 }
 

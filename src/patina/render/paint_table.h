@@ -1,0 +1,79 @@
+#pragma once
+// A Mueller BRDF table in the form the kernels read: small, in half precision, linear between nodes on all axes.
+//
+// Axes: polar angles of the viewer and of the light (equidistant in angle, where every Fourier mode is smooth), azimuth
+// phi of the outgoing minus the incident propagation direction on 0 .. pi (mirror symmetry gives the rest), wavelength.
+// Frames: the x axes are e_theta turned about the ray by -phi/2, that is the direction half way between both azimuths,
+// carried up the sphere. Such frames turn nowhere faster than the azimuth does, neither at the normal, where meridian
+// planes do, nor at backscattering, where scattering planes do, so that linear interpolation is safe everywhere.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "patina/brdf/mueller_table.h"
+#include "patina/render/mueller_packet.h"
+#include "patina/render/spectrum.h"
+
+namespace patina::render {
+
+class PaintTable {
+  public:
+    struct Size {
+        int angles = 32, azimuths = 33, wavelengths = 17;
+    };
+    explicit PaintTable(const brdf::MuellerTable& table) : PaintTable(table, Size{}) {}
+    PaintTable(const brdf::MuellerTable& table, const Size& size);
+
+    // The body BRDF, 1/sr, no cosine. With `first_column_only` the other columns are left as they are.
+    void evaluate(const Wavelengths& w, const Vec3& outgoing, const Vec3& incident, bool first_column_only,
+                  ScatteringMatrix& f) const;
+
+    // The delta part into the mirror direction: a, b, c, d of a Fresnel matrix with x across the plane of incidence.
+    std::array<Float4, 4> specular(const Wavelengths& w, float cos_o) const;
+
+    // Share of unpolarized light in the delta part among all that is reflected to this side, on average over
+    // wavelengths.
+    float specular_share(float cos_o) const;
+
+    // Draws a direction of the light in proportion, nearly, to the body BRDF times its cosine; and the density of that.
+    Vec3 sample(const Vec3& outgoing, const Vec2& u, float choice, float& pdf) const;
+    float pdf(const Vec3& outgoing, const Vec3& incident) const;
+
+  private:
+    static constexpr int cells = 16;  // of the square of the light's cosine, and of its azimuth
+    static constexpr int specular_nodes = 361;
+
+    // Where a pair of directions lies on the axes.
+    struct Place {
+        float theta_o, theta_i, phi;  // in units of nodes, phi in 0 .. pi
+        bool mirrored;                // phi was negative
+        float cos_half, sin_half;     // of phi / 2, signed
+        Vec2 azimuth_o, azimuth_k;    // unit vectors: of the outgoing and of the incident propagation direction
+    };
+    Place place(const Vec3& outgoing, const Vec3& incident) const;
+    void tabulate_body(const brdf::MuellerTable& table);
+    void tabulate_specular(const brdf::MuellerTable& table);
+    void tabulate_sampling();
+    std::size_t node(int o, int i, int p) const {
+        return (static_cast<std::size_t>(o * size_.angles + i) * size_.azimuths + p) * block_;
+    }
+    // Light's direction cell by cell, for one node of the viewer's angle.
+    struct DirectionCells {
+        std::array<float, cells + 1> rows;                        // cumulative over cos^2
+        std::array<std::array<float, cells + 1>, cells> columns;  // cumulative over the azimuth, for each row
+        float density(int row, int column) const {                // relative to the cosine-weighted hemisphere
+            return (rows[row + 1] - rows[row]) * (columns[row][column + 1] - columns[row][column]) * (cells * cells);
+        }
+    };
+
+    Size size_;
+    std::size_t block_;                           // halves a node holds: [column][wavelength][row]
+    std::vector<std::uint16_t> body_;             // [theta_o][theta_i][phi][block]
+    std::vector<std::array<float, 4>> specular_;  // [theta][wavelength]
+    std::vector<float> specular_share_;           // [theta_o]
+    std::vector<DirectionCells> directions_;      // [theta_o]
+};
+
+}  // namespace patina::render

@@ -1,0 +1,251 @@
+// What every registered surface model must obey. A model is here by being registered; only what it cannot do without
+// (children, tables) is named below.
+
+#include <gtest/gtest.h>
+
+#include "patina/brdf/tabulate.h"
+#include "patina/render/bsdf_set.h"
+#include "patina/render/random.h"
+#include "patina/render/test_support.h"
+
+namespace patina::render::test {
+namespace {
+
+using optics::Mueller;
+
+struct Case {
+    std::string name;
+    std::vector<Value> values;
+    bool reciprocal = true;
+    std::vector<Node> children = {};
+};
+
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
+// Every registered model with its defaults, and some with what is worth trying besides.
+std::vector<Case> cases() {
+    const std::string ggx = "ggx", gold = "Au", table = "layer.h5";
+    std::vector<Case> all;
+    for (const PluginDescriptor& plugin : plugins()) {
+        if (plugin.category != "bsdf") continue;
+        Case c{plugin.name, {}};
+        if (plugin.name == "paint") c.values = {{"table", table}};
+        if (plugin.name == "twosided") c.children = {node("bsdf", "roughconductor")};
+        all.push_back(c);
+    }
+    all.push_back({"roughconductor", {{"distribution", ggx}, {"alpha", 0.3}, {"material", gold}}});
+    all.push_back({"roughconductor", {{"distribution", ggx}, {"alpha_u", 0.1}, {"alpha_v", 0.6}}});
+    all.push_back({"roughconductor", {{"alpha", 0.5}, {"material", gold}}});
+    all.push_back({"dielectric", {{"int_ior", 1.33}, {"ext_ior", 1.6}}});
+    return all;
+}
+
+class EveryBsdf : public testing::TestWithParam<Case> {
+  protected:
+    void SetUp() override {
+        resources_.load_brdf_table = [](const std::string&) {
+            return std::make_shared<brdf::MuellerTable>(brdf::tabulate(
+                brdf::single_rayleigh_body(1.0), {.wavelengths_nm = {400, 700}, .nodes = 32, .orders = 3}));
+        };
+        builder_.resources = &resources_;
+        builder_.notes = &notes_;
+        builder_.nested = [this](const std::shared_ptr<const Properties>& child) {
+            set_.push_back(build_bsdf(*child, builder_));
+            return static_cast<int>(set_.size()) - 1;
+        };
+        const Node tree = node("bsdf", GetParam().name, GetParam().values, GetParam().children);
+        const Bsdf built = build_bsdf(*tree, builder_);
+        set_.push_back(built);
+        point_ = {&wavelengths_, {0.3f, 0.6f}, set_.data()};
+    }
+    const Bsdf& bsdf() const { return set_.back(); }
+
+    static Vec3 view(double theta_deg, double phi_deg = 25) {
+        const double s = std::sin(radians(theta_deg));
+        return Vec3(s * std::cos(radians(phi_deg)), s * std::sin(radians(phi_deg)), std::cos(radians(theta_deg)));
+    }
+    static std::vector<Vec3> views() {
+        return {view(0), view(20), view(50), view(75), view(86), view(40, 200), view(130)};
+    }
+
+    // A Mueller matrix that some medium can have: its coherency matrix (Cloude 1986) has no negative eigenvalue.
+    static double least_coherency_eigenvalue(const Mueller& m) {
+        using Complex = std::complex<double>;
+        Eigen::Matrix2cd pauli[4];
+        pauli[0] << 1, 0, 0, 1;
+        pauli[1] << 1, 0, 0, -1;
+        pauli[2] << 0, 1, 1, 0;
+        pauli[3] << 0, Complex(0, -1), Complex(0, 1), 0;
+        Eigen::Matrix4cd h = Eigen::Matrix4cd::Zero();
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j) {
+                Eigen::Matrix4cd kron;
+                for (int a = 0; a < 2; ++a)
+                    for (int b = 0; b < 2; ++b) kron.block<2, 2>(2 * a, 2 * b) = pauli[i](a, b) * pauli[j].conjugate();
+                h += 0.25 * m(i, j) * kron;
+            }
+        return Eigen::SelfAdjointEigenSolver<Eigen::Matrix4cd>(h).eigenvalues().minCoeff();
+    }
+
+    SceneResources resources_;
+    BsdfBuilder builder_;
+    std::map<std::string, std::string> notes_;
+    std::vector<Bsdf> set_;
+    Wavelengths wavelengths_ = Wavelengths::sample(0.11f);
+    ShadingPoint point_;
+};
+
+// No view gets more light than arrives from surroundings of radiance 1 (times the square of the relative index).
+TEST_P(EveryBsdf, ConservesEnergy) {
+    for (const Vec3& outgoing : views()) {
+        double total = 0;
+        const int count = 4096;
+        for (int i = 0; i < count; ++i) {
+            Sampler sampler(7, i, 1);
+            BsdfSample s;
+            const float lobe = sampler.next();
+            if (!bsdf_sample(bsdf(), point_, outgoing, lobe, sampler.next2(), s)) continue;
+            total += mean(s.weight.intensity()) * s.eta * s.eta / count;
+        }
+        // Stratified samples; 1 % covers single precision and what is left of the noise.
+        EXPECT_LE(total, 1.01) << outgoing.transpose();
+    }
+}
+
+TEST_P(EveryBsdf, GivesMuellerMatricesThatExist) {
+    for (const Vec3& outgoing : views())
+        for (int i = 0; i < 64; ++i) {
+            Sampler sampler(3, i, 2);
+            BsdfSample s;
+            const float lobe = sampler.next();
+            if (!bsdf_sample(bsdf(), point_, outgoing, lobe, sampler.next2(), s)) continue;
+            for (int w = 0; w < wavelengths_per_path; ++w) {
+                const Mueller m = s.weight.matrix(w);
+                ASSERT_TRUE(m.allFinite());
+                // Half-precision tables lose 5e-4 of a matrix.
+                EXPECT_GE(least_coherency_eigenvalue(m), -2e-3 * m(0, 0)) << m << "\nview " << outgoing.transpose();
+            }
+            if (s.weight.form == ScatteringMatrix::Form::depolarizing) continue;
+            EXPECT_NEAR(s.weight.x_in.dot(s.incident), 0, 1e-5);
+            EXPECT_NEAR(s.weight.x_out.dot(outgoing), 0, 1e-5);
+            EXPECT_NEAR(s.weight.x_in.norm(), 1, 1e-5);
+            EXPECT_NEAR(s.weight.x_out.norm(), 1, 1e-5);
+        }
+}
+
+// sample() and evaluate() are two views of one function.
+TEST_P(EveryBsdf, EvaluatesToWhatItSamples) {
+    for (const Vec3& outgoing : views())
+        for (int i = 0; i < 64; ++i) {
+            Sampler sampler(5, i, 3);
+            BsdfSample s;
+            const float lobe = sampler.next();
+            if (!bsdf_sample(bsdf(), point_, outgoing, lobe, sampler.next2(), s) || s.delta) continue;
+            BsdfValue value;
+            ASSERT_TRUE(bsdf_evaluate(bsdf(), point_, outgoing, s.incident, value));
+            // Float half vectors: the density of a narrow lobe amplifies their rounding.
+            EXPECT_NEAR(value.pdf / s.pdf, 1, 2e-2);
+            for (int e = 0; e < value.f.entries(); ++e)
+                EXPECT_NEAR(value.f.m[e][1] / s.pdf, s.weight.m[e][1], 2e-2 * s.weight.m[0][1] + 1e-6);
+            // With unpolarized light the first column is all that is asked for.
+            BsdfValue column;
+            ShadingPoint unpolarized = point_;
+            unpolarized.unpolarized_light = true;
+            ASSERT_TRUE(bsdf_evaluate(bsdf(), unpolarized, outgoing, s.incident, column));
+            EXPECT_EQ(column.f.matrix(2)(0, 0), value.f.matrix(2)(0, 0));
+            if (value.f.form == ScatteringMatrix::Form::general)
+                for (int row = 0; row < 4; ++row) EXPECT_EQ(column.f.m[row][2], value.f.m[row][2]);
+        }
+}
+
+// The density integrates to the share of samples that are drawn and no delta functions, cell by cell (chi-square).
+TEST_P(EveryBsdf, DrawsWithItsDensity) {
+    constexpr int rows = 10, columns = 12, count = 1 << 16, sub = 24;
+    for (const Vec3& outgoing : {view(30), view(70, 100)}) {
+        std::vector<double> expected(rows * columns), observed(rows * columns);
+        for (int i = 0; i < count; ++i) {
+            Sampler sampler(static_cast<std::uint32_t>(i), 0, 9);  // independent draws: one of each sequence
+            BsdfSample s;
+            const float lobe = sampler.next();
+            if (!bsdf_sample(bsdf(), point_, outgoing, lobe, sampler.next2(), s) || s.delta) continue;
+            const double azimuth = std::atan2(s.incident.y(), s.incident.x()) / (2 * pi);
+            const int row = std::min(rows - 1, static_cast<int>(0.5 * (1 + s.incident.z()) * rows));
+            const int column = std::min(columns - 1, static_cast<int>((azimuth < 0 ? azimuth + 1 : azimuth) * columns));
+            observed[row * columns + column] += 1;
+        }
+        for (int row = 0; row < rows * sub; ++row)
+            for (int column = 0; column < columns * sub; ++column) {
+                const double z = 2 * (row + 0.5) / (rows * sub) - 1, r = std::sqrt(1 - z * z);
+                const double azimuth = 2 * pi * (column + 0.5) / (columns * sub);
+                BsdfValue value;
+                const Vec3 incident(r * std::cos(azimuth), r * std::sin(azimuth), z);
+                if (!bsdf_evaluate(bsdf(), point_, outgoing, incident, value)) continue;
+                expected[row / sub * columns + column / sub] +=
+                    value.pdf * 4 * pi / (rows * columns * sub * sub) * count;
+            }
+        // Pool what is rare; each cell's midpoint rule errs by about 1 % in a lobe, which counts as variance.
+        double chi2 = 0, rare_expected = 0, rare_observed = 0;
+        int freedom = 0;
+        for (int cell = 0; cell < rows * columns; ++cell) {
+            if (expected[cell] < 20) {
+                rare_expected += expected[cell], rare_observed += observed[cell];
+                continue;
+            }
+            chi2 +=
+                std::pow(observed[cell] - expected[cell], 2) / (expected[cell] + std::pow(0.02 * expected[cell], 2));
+            ++freedom;
+        }
+        EXPECT_NEAR(rare_observed, rare_expected, 5 * std::sqrt(rare_expected) + 0.1 * rare_expected + 5);
+        if (freedom == 0) continue;
+        // Wilson & Hilferty (1931): chi^2 above this has a probability of 1e-5.
+        const double t = 2.0 / (9.0 * freedom);
+        EXPECT_LT(chi2, freedom * std::pow(1 - t + 4.265 * std::sqrt(t), 3)) << outgoing.transpose();
+    }
+}
+
+// The density is one over the area a unit of random numbers is stretched to.
+TEST_P(EveryBsdf, DensityIsOneOverTheJacobian) {
+    const float h = 2e-3f;
+    std::vector<double> ratios;
+    for (int i = 0; i < 200; ++i) {
+        Sampler sampler(11, i, 4);
+        const float lobe = 0.999f;
+        const Vec2 u = 0.02f * Vec2::Ones() + 0.96f * sampler.next2();
+        BsdfSample at, right, up;
+        const Vec3 outgoing = view(35);
+        if (!bsdf_sample(bsdf(), point_, outgoing, lobe, u, at) || at.delta) continue;
+        if (!bsdf_sample(bsdf(), point_, outgoing, lobe, u + Vec2(h, 0), right)) continue;
+        if (!bsdf_sample(bsdf(), point_, outgoing, lobe, u + Vec2(0, h), up)) continue;
+        const double area = (right.incident - at.incident).cross(up.incident - at.incident).norm() / (h * h);
+        ratios.push_back(area * at.pdf);
+    }
+    if (ratios.empty()) return;  // delta functions only
+    // Models that mix densities (a table between its nodes) obey it on average only: the middle value tells.
+    std::nth_element(ratios.begin(), ratios.begin() + ratios.size() / 2, ratios.end());
+    EXPECT_NEAR(ratios[ratios.size() / 2], 1.0, GetParam().name == "paint" ? 0.1 : 0.03);
+}
+
+// f(i, o) = R f(o, i)^T R, R = diag(1, 1, -1, 1), with the same x axes.
+TEST_P(EveryBsdf, IsReciprocal) {
+    if (!GetParam().reciprocal) return;
+    for (const auto& [a, b] :
+         {std::pair{view(20), view(55, 150)}, {view(70, 10), view(30, 40)}, {view(65, 0), view(60, 185)}}) {
+        BsdfValue forth, back;
+        if (!bsdf_evaluate(bsdf(), point_, a, b, forth) || !bsdf_evaluate(bsdf(), point_, b, a, back)) continue;
+        const Mueller f = forth.f.matrix(0) / b.z(), g = back.f.matrix(0) / a.z();
+        const bool turned = forth.f.form != ScatteringMatrix::Form::depolarizing;
+        // Bring the way back to the axes of the way forth: its light travels along -a in and along b out.
+        const Mueller g_here =
+            turned ? rotate_frames(g, -a, back.f.x_in, forth.f.x_out, b, back.f.x_out, forth.f.x_in) : g;
+        const Mueller expected = optics::reversal() * g_here.transpose() * optics::reversal();
+        // Half-precision, linearly interpolated tables: 5e-3; formulas: single precision.
+        EXPECT_LT((f - expected).norm(), (GetParam().name == "paint" ? 5e-3 : 1e-4) * f(0, 0)) << f << "\n\n"
+                                                                                               << expected;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Registered, EveryBsdf, testing::ValuesIn(cases()),
+                         [](const auto& info) { return info.param.name + std::to_string(info.index); });
+
+}  // namespace
+}  // namespace patina::render::test
