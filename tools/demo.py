@@ -46,7 +46,7 @@ class Demo:
         self.run("render", self.root / "examples" / "demo_scene.xml", "-o", f"{name}.exr", "--spp", self.spp,
                  "-D", f"paint={self.out / name}.h5", "-D", f"knot={self.out / 'knot.ply'}",
                  "-D", f"studio={self.out / 'studio.pfm'}", "-D", f"width={self.width}", "-D", f"height={self.height}")
-        self.run("image", "dolp", f"{name}.exr", "-o", f"{name}_dolp.png")
+        self.run("image", "dolp", f"{name}.exr", "-o", f"{name}_dolp.png", "--map", "inferno")
         self.run("image", "aolp", f"{name}.exr", "-o", f"{name}_aolp.png")
         self.steps_done += 1
         elapsed = time.time() - self.start
