@@ -70,9 +70,31 @@ double element(const WignerTables& d, int component, int middle, int i, int l) {
 
 }  // namespace
 
+void LayerKernel::finish(int nc, bool carries_flux, TransferSystem<double>& result) const {
+    // Cut what view rays would emit and beam rays receive, then add the extinction.
+    for (int i = 0; i < medium_.size(); ++i) {
+        if (medium_.roles[i] == Role::quadrature) result.quadrature += nc;
+        if (medium_.roles[i] == Role::view) result.views += nc;
+        for (Eigen::MatrixXd* matrix : {&result.h, &result.g}) {
+            if (medium_.roles[i] == Role::view) matrix->middleCols(i * nc, nc).setZero();
+            if (medium_.roles[i] == Role::beam) matrix->middleRows(i * nc, nc).setZero();
+            for (int c = i * nc; c < (i + 1) * nc; ++c) (*matrix)(c, c) += result.signature[c] / medium_.mu[i];
+        }
+    }
+
+    if (layer_.single_scattering_albedo == 1.0 && carries_flux) {
+        result.isotropic = result.flux = Eigen::VectorXd::Zero(result.size());
+        for (int i = 0; i < medium_.size(); ++i) {
+            if (medium_.roles[i] != Role::beam) result.isotropic[i * nc] = medium_.scale[i];
+            if (medium_.roles[i] != Role::view) result.flux[i * nc] = medium_.scale[i];
+        }
+    }
+}
+
 TransferSystem<double> LayerKernel::system(int m, Components components) const {
     const auto& x = layer_.expansion;
-    const int order = x.order(), rays = medium_.size(), nc = components.count, n = rays * nc;
+    const int order = x.order(), rays = medium_.size(), nc = components.count;
+    const int n = rays * nc;
     TransferSystem<double> result;
     result.signature = Eigen::VectorXd::Ones(n);
     result.smallest_mu = medium_.mu.minCoeff();
@@ -123,24 +145,7 @@ TransferSystem<double> LayerKernel::system(int m, Components components) const {
         target.noalias() = -layer_.single_scattering_albedo * left * right.transpose();
     }
 
-    // Cut what view rays would emit and beam rays receive, then add the extinction.
-    for (int i = 0; i < rays; ++i) {
-        if (medium_.roles[i] == Role::quadrature) result.quadrature += nc;
-        if (medium_.roles[i] == Role::view) result.views += nc;
-        for (Eigen::MatrixXd* matrix : {&result.h, &result.g}) {
-            if (medium_.roles[i] == Role::view) matrix->middleCols(i * nc, nc).setZero();
-            if (medium_.roles[i] == Role::beam) matrix->middleRows(i * nc, nc).setZero();
-            for (int c = i * nc; c < (i + 1) * nc; ++c) (*matrix)(c, c) += result.signature[c] / medium_.mu[i];
-        }
-    }
-
-    if (layer_.single_scattering_albedo == 1.0 && m == 0 && components.first == 0) {
-        result.isotropic = result.flux = Eigen::VectorXd::Zero(n);
-        for (int i = 0; i < rays; ++i) {
-            if (medium_.roles[i] != Role::beam) result.isotropic[i * nc] = medium_.scale[i];
-            if (medium_.roles[i] != Role::view) result.flux[i * nc] = medium_.scale[i];
-        }
-    }
+    finish(nc, m == 0 && components.first == 0, result);
     return result;
 }
 

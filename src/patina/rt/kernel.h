@@ -50,6 +50,9 @@ class LayerKernel {
     double quadrature_error() const { return (isotropic_i_.array() - 1.0).abs().maxCoeff(); }
 
   private:
+    // Extinction, the zeros of view and beam rays, and the conserved flux.
+    void finish(int components, bool carries_flux, TransferSystem<double>& result) const;
+
     const Layer& layer_;
     const Medium& medium_;
     // The degree-0 factors of I and Q at m = 0: they differ from 1 and 0 by the quadrature error of the higher degrees,
