@@ -36,8 +36,8 @@ TEST(Furnace, WhiteDiffuseSphereVanishes) {
     const auto image = render_tree(scene({path(-1, {{"rr_depth", std::int64_t{100}}}),
                                           perspective(look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0}), 20, 8, 8, 8),
                                           node("shape", "sphere", {}, {diffuse(1.0)}), constant_light()}));
-    // A convex surface: one bounce of weight exactly 1, whatever the sample; each puts four wavelengths into equal bins, so
-    // their mean is 1 for every pixel, but for the rounding of sums in single precision.
+    // A convex surface: one bounce of weight exactly 1, whatever the sample; each puts four wavelengths into equal
+    // bins, so their mean is 1 for every pixel, but for the rounding of sums in single precision.
     for (std::size_t p = 0; p < image.pixel_count(); ++p) {
         double mean = 0;
         for (int b = 0; b < image.bin_count(); ++b) mean += image.stokes(p, b)[0] / image.bin_count();
@@ -133,6 +133,47 @@ TEST(Determinism, SameSeedGivesTheSameBitsForOneAndTwoThreads) {
     RenderOptions other_seed;
     other_seed.seed = 1;
     EXPECT_NE(one.spectral, render_tree(tree, other_seed).spectral);
+}
+
+Node small_scene() {
+    return scene({path(3), perspective(look_at({0, -6, 4}, {0, 0, 1}, {0, 0, 1}), 40, 20, 12, 64), floor(diffuse(0.6)),
+                  node("emitter", "point", {{"position", Vector3d(3, -3, 5)}, uniform("intensity", 30)}),
+                  constant_light()});
+}
+
+// A crop is the very window of the whole picture.
+TEST(Determinism, CropHasThePixelsOfTheWhole) {
+    RenderOptions options;
+    const auto whole = render_tree(small_scene(), options);
+    options.crop = {5, 3, 17, 9};
+    const auto crop = render_tree(small_scene(), options);
+    ASSERT_EQ(crop.width, 12);
+    ASSERT_EQ(crop.height, 6);
+    EXPECT_EQ(crop.crop_x, 5);
+    for (int y = 0; y < 6; ++y)
+        for (int x = 0; x < 12; ++x)
+            for (int i = 0; i < 12; ++i)
+                EXPECT_EQ(crop.stokes_rgb(crop.pixel_index(x, y))[i],
+                          whole.stokes_rgb(whole.pixel_index(x + 5, y + 3))[i]);
+}
+
+TEST(Stopping, LeavesThePassesDoneAndSaysSo) {
+    CancelToken cancel;
+    JobControl control;
+    control.cancel = &cancel;
+    control.progress = [&](const ProgressReport& report) {
+        if (report.done >= 4) cancel.request_stop();
+    };
+    const auto image = render(*build_scene(*small_scene(), {}), {}, control);
+    EXPECT_EQ(image.metadata.at("stopped"), "yes");
+    EXPECT_EQ(image.sample_count[0], 4u);
+    EXPECT_GT(image.stokes_rgb(0)[1], 0);
+
+    RenderOptions options;
+    options.noise_target = 0.05;
+    const auto quiet = render_tree(small_scene(), options);
+    EXPECT_LE(std::stod(quiet.metadata.at("relative_noise")), 0.05);
+    EXPECT_EQ(quiet.metadata.count("stopped"), 0u);
 }
 
 TEST(BadScenes, AreRefusedWithTheNearestName) {

@@ -44,7 +44,7 @@ TEST(SolverBridge, ThinRayleighLayerScattersTheFieldOfADipole) {
 
             // Coherence matrix of the incident light in the renderer's parameters (U turned by the bridge), and back.
             const std::complex<double> i(0, 1);
-            const Eigen::Vector4d in = Eigen::Vector4d(1, 1, -1, 1).cwiseProduct(request.incident);
+            const Eigen::Vector4d in = from_solver(request.incident);
             Eigen::Matrix2cd c;
             c << in[0] + in[1], in[2] + i * in[3], in[2] - i * in[3], in[0] - in[1];
             c = 0.5 * (jones * c * jones.transpose()).eval();
@@ -52,8 +52,7 @@ TEST(SolverBridge, ThinRayleighLayerScattersTheFieldOfADipole) {
                 1.5 * Eigen::Vector4d((c(0, 0) + c(1, 1)).real(), (c(0, 0) - c(1, 1)).real(), 2 * c(0, 1).real(),
                                       2 * c(0, 1).imag());
             // Radiance of a thin layer: flux pi times P / (4 pi) times tau / mu_o.
-            const Eigen::Vector4d found =
-                Eigen::Vector4d(1, 1, -1, 1).cwiseProduct(field.upward[0][o][p]) * 4 * mu_o / tau;
+            const Eigen::Vector4d found = from_solver(field.upward[0][o][p]) * 4 * mu_o / tau;
             // Second scattering adds a share of tau / mu; single-precision axes 1e-7.
             EXPECT_LT((found - expected).norm(), 1e-4) << found.transpose() << "\n" << expected.transpose();
         }

@@ -81,6 +81,9 @@ void add_camera(std::vector<PluginDescriptor>& all) {
     camera.push_back({"aperture_radius", "number", "scene units", "", ">= 0", "of the lens"});
     camera.push_back({"focus_distance", "number", "scene units", "", "> 0", "of the plane in focus"});
     all.push_back({"sensor", "thinlens", "Camera with depth of field.", camera});
+}
+
+void add_film(std::vector<PluginDescriptor>& all) {
     for (const char* name : {"hdrfilm", "specfilm"})
         all.push_back({"film",
                        name,
@@ -138,6 +141,7 @@ std::vector<PluginDescriptor> build_registry() {
     add_shapes(all);
     add_emitters(all);
     add_camera(all);
+    add_film(all);
     add_integrators(all);
     return all;
 }

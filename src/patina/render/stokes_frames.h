@@ -22,6 +22,11 @@ inline optics::Mueller from_solver(const optics::Mueller& m) {
     return flip.asDiagonal() * m * flip.asDiagonal();
 }
 
+// A Stokes vector of the solver in the renderer's signs, in the frame with x = e_theta.
+inline optics::Stokes from_solver(const optics::Stokes& s) {
+    return {s[0], s[1], -s[2], s[3]};
+}
+
 // e_theta = d k / d theta about the axis z (the outward normal), for light that travels along k. At the poles the
 // meridian plane is that of azimuth 0.
 inline Vec3 meridian_axis(const Vec3& k) {
