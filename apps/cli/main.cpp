@@ -73,6 +73,9 @@ int run(int argc, char** argv) {
     add_global_options(program, session);
     cli::add_solve(program, session);
     cli::add_field(program, session);
+    cli::add_paint(program, session);
+    cli::add_sweep(program, session);
+    cli::add_compare(program, session);
     cli::add_check(program, session);
     cli::add_materials(program, session);
     cli::add_new(program, session);
