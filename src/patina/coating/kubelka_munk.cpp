@@ -72,7 +72,8 @@ double diffuse_reflection_from_outside(double refractive_index) {
     const math::Quadrature rule = math::gauss_legendre(64, 0.0, 1.0);
     double sum = 0.0;
     for (int i = 0; i < rule.size(); ++i)
-        sum += 2.0 * rule.nodes[i] * rule.weights[i] * optics::fresnel_reflection(rule.nodes[i], 1.0, refractive_index)(0, 0);
+        sum += 2.0 * rule.nodes[i] * rule.weights[i] *
+               optics::fresnel_reflection(rule.nodes[i], 1.0, refractive_index)(0, 0);
     return sum;
 }
 

@@ -21,7 +21,8 @@ struct BlackAndWhite {
     ReflectanceSpectra black, white;
 };
 
-BlackAndWhite over_cards(const VariableStack& stack, double thickness, double white_reflectance, const JobControl& control) {
+BlackAndWhite over_cards(const VariableStack& stack, double thickness, double white_reflectance,
+                         const JobControl& control) {
     Question question{{thickness}, 0.0};
     BlackAndWhite result;
     result.black = stack.solve(question, control);
@@ -59,10 +60,12 @@ HidingPower hiding_power(const Recipe& recipe, const VariableStack& stack, const
     int step = 0;
     const auto contrast_at = [&](double thickness) {
         control.report({"hiding power", ++step, 0, fmt::format("thickness {:.4g}", thickness)});
-        return contrast_ratio(stack.wavelengths_nm(), over_cards(stack, thickness, options.white_reflectance, control)).r45_0;
+        return contrast_ratio(stack.wavelengths_nm(), over_cards(stack, thickness, options.white_reflectance, control))
+            .r45_0;
     };
     const double start = std::isfinite(stack.thickness()) && stack.thickness() > 0.0 ? stack.thickness() : 10.0;
-    if (stack.layer().scatters) result.thickness = hiding_thickness(contrast_at, options.wanted_contrast_ratio, start, thinnest, thickest);
+    if (stack.layer().scatters)
+        result.thickness = hiding_thickness(contrast_at, options.wanted_contrast_ratio, start, thinnest, thickest);
     if (!result.thickness)
         result.why_not = why_it_never_hides(stack, options, contrast);
     else if (!stack.layer().is_optical)
@@ -70,8 +73,8 @@ HidingPower hiding_power(const Recipe& recipe, const VariableStack& stack, const
     return result;
 }
 
-// Where R0, without the surface, is about three quarters of the reflectivity: by two-flux theory with the S of diffusion,
-// 3/4 of the transport scattering coefficient.
+// Where R0, without the surface, is about three quarters of the reflectivity: by two-flux theory with the S of
+// diffusion, 3/4 of the transport scattering coefficient.
 double telling_thickness(double reflectivity, double transport_scattering) {
     return kubelka_munk_scattering_power(0.75 * reflectivity, reflectivity) / (0.75 * transport_scattering);
 }
@@ -98,15 +101,16 @@ std::vector<FilmCoefficients> film_coefficients(const VariableStack& stack, cons
     const ReflectanceSpectra r0 = stack.solve(thin, control);
     for (int w = 0; w < count; ++w) {
         film[w].kubelka_munk_thickness = thickness[w];
-        film[w].kubelka_munk = kubelka_munk_from(saunderson_to_inner(r0.d8_excluded[w], film[w].surface), reflectivity[w], thickness[w]);
+        film[w].kubelka_munk =
+            kubelka_munk_from(saunderson_to_inner(r0.d8_excluded[w], film[w].surface), reflectivity[w], thickness[w]);
     }
     return film;
 }
 
 }  // namespace
 
-std::optional<double> hiding_thickness(const std::function<double(double)>& contrast_ratio, double wanted, double start, double smallest,
-                                       double largest) {
+std::optional<double> hiding_thickness(const std::function<double(double)>& contrast_ratio, double wanted, double start,
+                                       double smallest, double largest) {
     PATINA_EXPECT(wanted > 0.0 && wanted < 1.0 && smallest > 0.0 && start > 0.0 && smallest < largest);
     // The logarithm of what is left of the contrast falls almost evenly with the logarithm of the thickness.
     constexpr double nothing_left = -40.0;

@@ -26,8 +26,8 @@ struct ContrastRatio {
 
 // The film that just hides: contrast ratio 45:0 equal to the wanted one.
 struct HidingPower {
-    // Dry film thickness of the variable layer; in optical thickness when the layer is given in optical terms. Nothing when
-    // no thickness hides, with the reason in `why_not`.
+    // Dry film thickness of the variable layer; in optical thickness when the layer is given in optical terms. Nothing
+    // when no thickness hides, with the reason in `why_not`.
     std::optional<double> thickness;
     std::optional<double> spreading_rate_m2_per_l;  // volume_solids / thickness; nothing for a layer in optical terms
     double volume_solids = 1.0;
@@ -37,9 +37,9 @@ struct HidingPower {
 
 // The variable layer by itself, with a top surface of the recipe's kind, at one wavelength.
 struct FilmCoefficients {
-    // From R0 and R_inf, d:8 with specular excluded, each freed of its surface by Saunderson's correction. R0 is taken at
-    // the thickness where it is about three quarters of R_inf: a thin film's reflectance is not of two fluxes, and an
-    // opaque film's tells nothing of S. Nothing when the film reflects too little.
+    // From R0 and R_inf, d:8 with specular excluded, each freed of its surface by Saunderson's correction. R0 is taken
+    // at the thickness where it is about three quarters of R_inf: a thin film's reflectance is not of two fluxes, and
+    // an opaque film's tells nothing of S. Nothing when the film reflects too little.
     std::optional<KubelkaMunk> kubelka_munk;
     double kubelka_munk_thickness = 0.0;  // where R0 was taken
     SurfaceReflection surface;            // k1 at 8 degrees, k2
@@ -69,7 +69,7 @@ PaintMetrics paint_metrics(const Recipe& recipe, const PaintOptions& options, co
 
 // The thickness at which an increasing contrast ratio reaches `wanted`, to 1e-4 of it, searched from `start` between
 // `smallest` and `largest`; nothing when it is not there.
-std::optional<double> hiding_thickness(const std::function<double(double thickness)>& contrast_ratio, double wanted, double start,
-                                       double smallest, double largest);
+std::optional<double> hiding_thickness(const std::function<double(double thickness)>& contrast_ratio, double wanted,
+                                       double start, double smallest, double largest);
 
 }  // namespace patina::coating

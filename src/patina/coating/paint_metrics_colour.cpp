@@ -30,20 +30,25 @@ int observer_deg(Observer observer) {
     return observer == Observer::cie1931_2deg ? 2 : 10;
 }
 
-Eigen::Vector3d tristimulus(const std::vector<double>& wavelengths_nm, const std::vector<double>& reflectance, const Viewing& viewing) {
-    return spectral::xyz_of_reflectance(spectrum_of(wavelengths_nm, reflectance), spectral::illuminant(viewing.illuminant), viewing.observer);
+Eigen::Vector3d tristimulus(const std::vector<double>& wavelengths_nm, const std::vector<double>& reflectance,
+                            const Viewing& viewing) {
+    return spectral::xyz_of_reflectance(spectrum_of(wavelengths_nm, reflectance),
+                                        spectral::illuminant(viewing.illuminant), viewing.observer);
 }
 
-Eigen::Vector3d lab(const std::vector<double>& wavelengths_nm, const std::vector<double>& reflectance, const Viewing& viewing) {
+Eigen::Vector3d lab(const std::vector<double>& wavelengths_nm, const std::vector<double>& reflectance,
+                    const Viewing& viewing) {
     return spectral::xyz_to_lab(tristimulus(wavelengths_nm, reflectance, viewing),
                                 spectral::white_point(spectral::illuminant(viewing.illuminant), viewing.observer));
 }
 
 WhitenessAndYellowness whiteness(const std::vector<double>& wavelengths_nm, const std::vector<double>& reflectance) {
     const Eigen::Vector3d xyz = tristimulus(wavelengths_nm, reflectance, laboratory_viewing);
-    const spectral::Whiteness w = spectral::astm_e313_whiteness(xyz, spectral::WhitenessLight::d65, laboratory_viewing.observer);
+    const spectral::Whiteness w =
+        spectral::astm_e313_whiteness(xyz, spectral::WhitenessLight::d65, laboratory_viewing.observer);
     const double yellowness =
-        xyz[1] > 0.0 ? spectral::astm_e313_yellowness(xyz, spectral::WhitenessLight::d65, laboratory_viewing.observer) : 0.0;
+        xyz[1] > 0.0 ? spectral::astm_e313_yellowness(xyz, spectral::WhitenessLight::d65, laboratory_viewing.observer)
+                     : 0.0;
     return {w.index, w.tint, yellowness, w.valid};
 }
 

@@ -24,12 +24,14 @@ std::span<const Viewing> usual_viewings();
 // "2" or "10".
 int observer_deg(spectral::Observer observer);
 
-// XYZ, Y = 1 for the perfect reflecting diffuser, of reflectance factors at ascending wavelengths: straight lines between
-// them, the ends held outside (ASTM E308, 7.3.2.2). One value counts for all wavelengths.
-Eigen::Vector3d tristimulus(const std::vector<double>& wavelengths_nm, const std::vector<double>& reflectance, const Viewing& viewing);
+// XYZ, Y = 1 for the perfect reflecting diffuser, of reflectance factors at ascending wavelengths: straight lines
+// between them, the ends held outside (ASTM E308, 7.3.2.2). One value counts for all wavelengths.
+Eigen::Vector3d tristimulus(const std::vector<double>& wavelengths_nm, const std::vector<double>& reflectance,
+                            const Viewing& viewing);
 
 // CIE 1976 (L*, a*, b*) of the same.
-Eigen::Vector3d lab(const std::vector<double>& wavelengths_nm, const std::vector<double>& reflectance, const Viewing& viewing);
+Eigen::Vector3d lab(const std::vector<double>& wavelengths_nm, const std::vector<double>& reflectance,
+                    const Viewing& viewing);
 
 struct WhitenessAndYellowness {
     double whiteness, tint, yellowness;

@@ -29,8 +29,10 @@ double thickness_of(const RecipeLayer& layer) {
 }
 
 RecipeLayer with_unit_thickness(RecipeLayer layer) {
-    if (auto* composition = std::get_if<Composition>(&layer.content)) composition->thickness_um = 1.0;
-    else std::get<OpticalLayer>(layer.content).optical_thickness = 1.0;
+    if (auto* composition = std::get_if<Composition>(&layer.content))
+        composition->thickness_um = 1.0;
+    else
+        std::get<OpticalLayer>(layer.content).optical_thickness = 1.0;
     return layer;
 }
 
@@ -71,7 +73,8 @@ VariableLayer variable_layer(const Recipe& recipe) {
     const auto found = std::find_if(recipe.layers.begin(), recipe.layers.end(), scatters_in);
     const bool scatters = found != recipe.layers.end();
     const RecipeLayer& layer = scatters ? *found : recipe.layers.front();
-    return {static_cast<int>(&layer - recipe.layers.data()), scatters, std::holds_alternative<OpticalLayer>(layer.content)};
+    return {static_cast<int>(&layer - recipe.layers.data()), scatters,
+            std::holds_alternative<OpticalLayer>(layer.content)};
 }
 
 VariableStack::VariableStack(const Recipe& recipe, const StackOptions& options, const JobControl& control)
@@ -97,7 +100,8 @@ VariableStack::VariableStack(const Recipe& recipe, const StackOptions& options, 
     std::set<std::string> notes;
     for (OpticalProblem& optical : set_up) {
         if (const std::string reason = solver_.unsupported(optical.problem); !reason.empty())
-            throw Error(ErrorKind::input, fmt::format("solver \"{}\" cannot do this recipe ({})", solver_.name(), reason));
+            throw Error(ErrorKind::input,
+                        fmt::format("solver \"{}\" cannot do this recipe ({})", solver_.name(), reason));
         notes.insert(optical.notes.begin(), optical.notes.end());
         optical_per_length_.push_back(optical.problem.layers[layer_.index].optical_thickness);
         problems_.push_back(std::move(optical.problem));
@@ -124,8 +128,7 @@ rt::Problem VariableStack::problem(int w, const Question& question) const {
     if (question.lambertian_base) result.base = rt::LambertianBase{*question.lambertian_base};
     if (question.lambertian_base == 0.0) result.base = rt::BlackBase{};
 
-    if (question.below == Below::nothing || std::isinf(layer.optical_thickness))
-        result.layers.resize(layer_.index + 1);
+    if (question.below == Below::nothing || std::isinf(layer.optical_thickness)) result.layers.resize(layer_.index + 1);
     if (question.above == Above::nothing) {
         result.layers.erase(result.layers.begin(), result.layers.begin() + layer_.index);
         if (!recipe_.has_interface) result.refractive_index_above = result.layers.front().refractive_index;
@@ -151,7 +154,8 @@ ReflectanceSpectra VariableStack::solve(const Question& question, const JobContr
         const Geometry geometry = measure(reflection);
         result.r45_0[w] = geometry.r45_0;
         result.d8_excluded[w] = geometry.d8;
-        result.d8_included[w] = geometry.d8 + rt::specular_surface(at_w, mu_8)(0, 0) + rt::specular_coherent(at_w, mu_8)(0, 0);
+        result.d8_included[w] =
+            geometry.d8 + rt::specular_surface(at_w, mu_8)(0, 0) + rt::specular_coherent(at_w, mu_8)(0, 0);
         result.bihemispherical[w] = geometry.bihemispherical;
     });
     if (control.stop_requested()) throw Error(ErrorKind::interrupted, "stopped");

@@ -15,9 +15,9 @@ namespace patina::coating {
 // Reflectance factors (1 for the perfect reflecting diffuser) for unpolarized light, one value a wavelength, in the
 // geometries of instruments. With an index-matched top, directions are those in the host and nothing is specular.
 struct ReflectanceSpectra {
-    std::vector<double> r45_0;         // 45:0, light at 45 degrees all around, seen along the normal; no specular light
-    std::vector<double> d8_excluded;   // d:8, diffuse light, seen at 8 degrees; specular reflection left out
-    std::vector<double> d8_included;   // the same with the reflection of the surface (and of a metal base)
+    std::vector<double> r45_0;        // 45:0, light at 45 degrees all around, seen along the normal; no specular light
+    std::vector<double> d8_excluded;  // d:8, diffuse light, seen at 8 degrees; specular reflection left out
+    std::vector<double> d8_included;  // the same with the reflection of the surface (and of a metal base)
     std::vector<double> bihemispherical;  // d:d, diffuse in, all out; specular reflection left out
 };
 
@@ -38,7 +38,8 @@ VariableLayer variable_layer(const Recipe& recipe);
 
 class VariableStack {
   public:
-    // Mie and mixing rules run here, once a wavelength. Throws Error(input) for what cannot be solved, Error(interrupted).
+    // Mie and mixing rules run here, once a wavelength. Throws Error(input) for what cannot be solved,
+    // Error(interrupted).
     VariableStack(const Recipe& recipe, const StackOptions& options, const JobControl& control = {});
 
     const std::vector<double>& wavelengths_nm() const { return options_.wavelengths_nm; }

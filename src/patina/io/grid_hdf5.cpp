@@ -6,8 +6,8 @@
 
 namespace patina::io {
 
-void write_grid_hdf5(const std::filesystem::path& path, const std::vector<GridAxis>& axes, const std::vector<GridVariable>& variables,
-                     const std::map<std::string, std::string>& attributes) {
+void write_grid_hdf5(const std::filesystem::path& path, const std::vector<GridAxis>& axes,
+                     const std::vector<GridVariable>& variables, const std::map<std::string, std::string>& attributes) {
     hdf5::Writer writer;
     for (const auto& [name, value] : attributes) writer.attribute("/", name, value);
     for (const GridAxis& axis : axes) {

@@ -21,7 +21,7 @@ struct GridVariable {
 };
 
 // Writes the file whole or not at all; `attributes` go to the root. Throws Error(runtime) when it cannot be written.
-void write_grid_hdf5(const std::filesystem::path& path, const std::vector<GridAxis>& axes, const std::vector<GridVariable>& variables,
-                     const std::map<std::string, std::string>& attributes);
+void write_grid_hdf5(const std::filesystem::path& path, const std::vector<GridAxis>& axes,
+                     const std::vector<GridVariable>& variables, const std::map<std::string, std::string>& attributes);
 
 }  // namespace patina::io

@@ -46,7 +46,8 @@ TableDifference compare_at(const brdf::MuellerTable& a, const brdf::MuellerTable
     const std::vector<double> mu = compared_cosines(a);
     std::vector<double> phi;
     for (int step = 0; step <= 12; ++step) phi.push_back(radians(15.0 * step));
-    const brdf::MuellerGrid grid_a = a.evaluate_grid(wavelength_nm, mu, mu, phi), grid_b = b.evaluate_grid(wavelength_nm, mu, mu, phi);
+    const brdf::MuellerGrid grid_a = a.evaluate_grid(wavelength_nm, mu, mu, phi),
+                            grid_b = b.evaluate_grid(wavelength_nm, mu, mu, phi);
 
     Gatherer f00, degree, albedo;
     std::array<std::array<Gatherer, 4>, 4> elements;
@@ -76,22 +77,32 @@ TableDifference compare_at(const brdf::MuellerTable& a, const brdf::MuellerTable
 std::vector<TableDifference> compare_tables(const brdf::MuellerTable& a, const brdf::MuellerTable& b) {
     std::vector<TableDifference> result;
     for (const double wavelength : a.wavelengths_nm)
-        if (wavelength >= b.wavelengths_nm.front() && wavelength <= b.wavelengths_nm.back()) result.push_back(compare_at(a, b, wavelength));
+        if (wavelength >= b.wavelengths_nm.front() && wavelength <= b.wavelengths_nm.back())
+            result.push_back(compare_at(a, b, wavelength));
     if (result.empty())
-        throw Error(ErrorKind::input, fmt::format("no wavelength of the first table ({:g} to {:g} nm) lies in the second ({:g} to {:g} nm)",
-                                                  a.wavelengths_nm.front(), a.wavelengths_nm.back(), b.wavelengths_nm.front(), b.wavelengths_nm.back()));
+        throw Error(
+            ErrorKind::input,
+            fmt::format("no wavelength of the first table ({:g} to {:g} nm) lies in the second ({:g} to {:g} nm)",
+                        a.wavelengths_nm.front(), a.wavelengths_nm.back(), b.wavelengths_nm.front(),
+                        b.wavelengths_nm.back()));
     return result;
 }
 
 std::vector<ColourDifference> compare_colours(const coating::PaintMetrics& a, const coating::PaintMetrics& b) {
     using coating::ReflectanceSpectra;
     const std::pair<const char*, std::vector<double> ReflectanceSpectra::*> geometries[] = {
-        {"45:0", &ReflectanceSpectra::r45_0}, {"d:8 excluded", &ReflectanceSpectra::d8_excluded}, {"d:8 included", &ReflectanceSpectra::d8_included}};
+        {"45:0", &ReflectanceSpectra::r45_0},
+        {"d:8 excluded", &ReflectanceSpectra::d8_excluded},
+        {"d:8 included", &ReflectanceSpectra::d8_included}};
     std::vector<ColourDifference> result;
     for (const auto& [name, values] : geometries)
         for (const coating::Viewing& viewing : coating::usual_viewings()) {
-            ColourDifference row{name, std::string(viewing.illuminant), coating::observer_deg(viewing.observer),
-                                 coating::lab(a.wavelengths_nm, a.own.*values, viewing), coating::lab(b.wavelengths_nm, b.own.*values, viewing), 0.0};
+            ColourDifference row{name,
+                                 std::string(viewing.illuminant),
+                                 coating::observer_deg(viewing.observer),
+                                 coating::lab(a.wavelengths_nm, a.own.*values, viewing),
+                                 coating::lab(b.wavelengths_nm, b.own.*values, viewing),
+                                 0.0};
             row.delta_e_2000 = spectral::delta_e_2000(row.lab_a, row.lab_b);
             result.push_back(std::move(row));
         }

@@ -19,10 +19,10 @@ struct Difference {
 // At one wavelength of A, over the nodes of A for both directions (up to 80 degrees) and azimuths every 15 degrees.
 struct TableDifference {
     double wavelength_nm = 0.0;
-    double mean_f00 = 0.0;  // of A, 1/sr, the scale of the first
-    Difference f00;         // body BRDF, element I <- I, 1/sr
+    double mean_f00 = 0.0;                             // of A, 1/sr, the scale of the first
+    Difference f00;                                    // body BRDF, element I <- I, 1/sr
     std::array<std::array<Difference, 4>, 4> mueller;  // elements divided by the own f00 ([0][0] is 0)
-    Difference dolp;    // degree of linear polarization of unpolarized light
+    Difference dolp;                                   // degree of linear polarization of unpolarized light
     Difference albedo;  // directional-hemispherical reflectance, over angles of incidence
 };
 
@@ -30,7 +30,7 @@ struct TableDifference {
 std::vector<TableDifference> compare_tables(const brdf::MuellerTable& a, const brdf::MuellerTable& b);
 
 struct ColourDifference {
-    std::string geometry;      // "45:0", "d:8 excluded", "d:8 included"
+    std::string geometry;  // "45:0", "d:8 excluded", "d:8 included"
     std::string illuminant;
     int observer_deg = 0;
     Eigen::Vector3d lab_a, lab_b;

@@ -15,12 +15,14 @@ namespace patina::jobs {
 
 namespace {
 
-// Reflectance factor pi f(I <- I) of the body in the plane of incidence; `theta_o_deg` is negative on the side of the light.
+// Reflectance factor pi f(I <- I) of the body in the plane of incidence; `theta_o_deg` is negative on the side of the
+// light.
 std::vector<double> in_plane(const brdf::MuellerTable& table, double theta_i_deg, double theta_o_deg) {
     std::vector<double> factors;
     const double phi = theta_o_deg >= 0.0 ? 0.0 : pi;
     for (const double wavelength : table.wavelengths_nm)
-        factors.push_back(pi * table.evaluate(wavelength, std::cos(radians(theta_o_deg)), std::cos(radians(theta_i_deg)), phi)(0, 0));
+        factors.push_back(
+            pi * table.evaluate(wavelength, std::cos(radians(theta_o_deg)), std::cos(radians(theta_i_deg)), phi)(0, 0));
     return factors;
 }
 
@@ -28,17 +30,21 @@ void check(const PaintRequest& request) {
     const auto inside = [](double value, double low, double high) { return value > low && value <= high; };
     const coating::PaintOptions& options = request.options;
     if (!inside(options.white_reflectance, 0.0, 1.0))
-        throw Error(ErrorKind::usage, fmt::format("a white card of reflectance {:g} (above 0, at most 1)", options.white_reflectance));
+        throw Error(ErrorKind::usage,
+                    fmt::format("a white card of reflectance {:g} (above 0, at most 1)", options.white_reflectance));
     if (!inside(options.wanted_contrast_ratio, 0.0, 1.0 - 1e-6))
-        throw Error(ErrorKind::usage, fmt::format("a contrast ratio of {:g} (above 0, below 1)", options.wanted_contrast_ratio));
+        throw Error(ErrorKind::usage,
+                    fmt::format("a contrast ratio of {:g} (above 0, below 1)", options.wanted_contrast_ratio));
     if (options.stack.streams != 0 && (options.stack.streams < 2 || options.stack.streams > 512))
         throw Error(ErrorKind::usage, fmt::format("--streams {}: 2 to 512 make sense", options.stack.streams));
     const std::vector<double>& wavelengths = options.stack.wavelengths_nm;
     for (std::size_t i = 0; i < wavelengths.size(); ++i) {
         if (!(wavelengths[i] >= 100.0 && wavelengths[i] <= 1e6))
-            throw Error(ErrorKind::usage, fmt::format("a wavelength of {:g} nm (100 nm to 1 mm make sense)", wavelengths[i]));
+            throw Error(ErrorKind::usage,
+                        fmt::format("a wavelength of {:g} nm (100 nm to 1 mm make sense)", wavelengths[i]));
         if (i > 0 && wavelengths[i] <= wavelengths[i - 1])
-            throw Error(ErrorKind::usage, fmt::format("wavelengths must ascend ({:g} nm follows {:g} nm)", wavelengths[i], wavelengths[i - 1]));
+            throw Error(ErrorKind::usage, fmt::format("wavelengths must ascend ({:g} nm follows {:g} nm)",
+                                                      wavelengths[i], wavelengths[i - 1]));
     }
 }
 
@@ -103,7 +109,8 @@ PaintReport paint(const coating::Recipe& recipe, const PaintRequest& request, co
     if (request.target_lab) {
         report.target_lab = request.target_lab;
         report.delta_e_2000 = spectral::delta_e_2000(
-            *request.target_lab, coating::lab(report.metrics.wavelengths_nm, report.metrics.own.r45_0, coating::laboratory_viewing));
+            *request.target_lab,
+            coating::lab(report.metrics.wavelengths_nm, report.metrics.own.r45_0, coating::laboratory_viewing));
     }
     return report;
 }

@@ -19,7 +19,8 @@ struct PaintRequest {
     std::string command;
 };
 
-// Light at 45 degrees, seen in its plane at an angle from the mirror direction towards the normal and beyond (ASTM E2194).
+// Light at 45 degrees, seen in its plane at an angle from the mirror direction towards the normal and beyond (ASTM
+// E2194).
 struct AspecularColour {
     double aspecular_deg;
     std::vector<double> reflectance;  // factors, one a wavelength

@@ -23,7 +23,9 @@ namespace fs = std::filesystem;
 constexpr std::size_t most_points = 1'000'000;
 
 Error bad_axis(const std::string& text, const std::string& why) {
-    return Error(ErrorKind::usage, fmt::format("--vary {}: {} (write KEY=begin:end:count or KEY=begin:end:countlog, as in layers.0.thickness_um=1:200:24log)", text, why));
+    return Error(ErrorKind::usage, fmt::format("--vary {}: {} (write KEY=begin:end:count or KEY=begin:end:countlog, as "
+                                               "in layers.0.thickness_um=1:200:24log)",
+                                               text, why));
 }
 
 template <class Number>
@@ -32,12 +34,20 @@ bool parse(std::string_view text, Number& value) {
     return status == std::errc{} && end == text.data() + text.size();
 }
 
+// The value of twelve digits nearest to it: 0.14 rather than 0.13999999999999999.
+double rounded(double value) {
+    double result = value;
+    parse(fmt::format("{:.12g}", value), result);
+    return result;
+}
+
 std::vector<double> spaced(double begin, double end, int count, bool logarithmic) {
     std::vector<double> values{begin};
-    for (int i = 1; i < count; ++i) {
+    for (int i = 1; i + 1 < count; ++i) {
         const double t = static_cast<double>(i) / (count - 1);
-        values.push_back(i + 1 == count ? end : logarithmic ? begin * std::pow(end / begin, t) : begin + (end - begin) * t);
+        values.push_back(rounded(logarithmic ? begin * std::pow(end / begin, t) : begin + (end - begin) * t));
     }
+    if (count > 1) values.push_back(end);
     return values;
 }
 
@@ -48,8 +58,10 @@ class Grid {
         if (axes.empty()) throw Error(ErrorKind::usage, "a sweep needs at least one --vary KEY=begin:end:count");
         std::set<std::string> keys;
         for (const SweepAxis& axis : axes) {
-            if (!keys.insert(axis.key).second) throw Error(ErrorKind::usage, fmt::format("--vary {} is given twice", axis.key));
-            if (axis.values.size() > most_points / size_) throw Error(ErrorKind::usage, fmt::format("a sweep of more than {} points", most_points));
+            if (!keys.insert(axis.key).second)
+                throw Error(ErrorKind::usage, fmt::format("--vary {} is given twice", axis.key));
+            if (axis.values.size() > most_points / size_)
+                throw Error(ErrorKind::usage, fmt::format("a sweep of more than {} points", most_points));
             size_ *= axis.values.size();
         }
     }
@@ -58,7 +70,8 @@ class Grid {
 
     std::vector<double> values(std::size_t point) const {
         std::vector<double> result(axes_.size());
-        for (std::size_t a = axes_.size(); a-- > 0; point /= axes_[a].values.size()) result[a] = axes_[a].values[point % axes_[a].values.size()];
+        for (std::size_t a = axes_.size(); a-- > 0; point /= axes_[a].values.size())
+            result[a] = axes_[a].values[point % axes_[a].values.size()];
         return result;
     }
 
@@ -76,7 +89,8 @@ class Grid {
 
 class Sweep {
   public:
-    Sweep(const SweepRequest& request, const JobControl& control) : request_(request), control_(control), grid_(request.axes) {}
+    Sweep(const SweepRequest& request, const JobControl& control)
+        : request_(request), control_(control), grid_(request.axes) {}
 
     SweepResult run() {
         prepare();
@@ -89,7 +103,9 @@ class Sweep {
         for (std::size_t p = 0; p < grid_.size() && !result_.interrupted; ++p) {
             if (points_[p]) continue;
             compute(p);
-            if (!result_.interrupted) control_.report({"sweep", static_cast<std::int64_t>(++done), std::ssize(points_), fmt::format("{}", fmt::join(grid_.settings(p), ", "))});
+            if (!result_.interrupted)
+                control_.report({"sweep", static_cast<std::int64_t>(++done), std::ssize(points_),
+                                 fmt::format("{}", fmt::join(grid_.settings(p), ", "))});
         }
         result_.computed = done - result_.reused;
         if (!result_.interrupted) gather();
@@ -111,7 +127,9 @@ class Sweep {
 
         std::error_code error;
         fs::create_directories(request_.folder / "points", error);
-        if (error) throw Error(ErrorKind::runtime, fmt::format("{}: {}", (request_.folder / "points").string(), error.message()));
+        if (error)
+            throw Error(ErrorKind::runtime,
+                        fmt::format("{}: {}", (request_.folder / "points").string(), error.message()));
         expect_writable(request_.folder / "sweep.h5");
         const std::set<std::string> own(keys_.begin(), keys_.end());
         for (const fs::directory_entry& entry : fs::directory_iterator(request_.folder / "points"))
@@ -189,9 +207,11 @@ class Sweep {
         std::vector<int> with_wavelength = grid_axes;
         with_wavelength.push_back(static_cast<int>(axes.size()));
         axes.push_back({"wavelength_nm", "nm", points_.front()->wavelengths_nm});
-        variables.push_back({"reflectance_45_0", "1", "reflectance factor over the own base, 45:0", with_wavelength, {}});
+        variables.push_back(
+            {"reflectance_45_0", "1", "reflectance factor over the own base, 45:0", with_wavelength, {}});
         for (const auto& point : points_)
-            variables.back().values.insert(variables.back().values.end(), point->reflectance_45_0.begin(), point->reflectance_45_0.end());
+            variables.back().values.insert(variables.back().values.end(), point->reflectance_45_0.begin(),
+                                           point->reflectance_45_0.end());
         io::write_grid_hdf5(request_.folder / "sweep.h5", axes, variables,
                             {{"format", "patina-sweep"},
                              {"format_version", "1"},
@@ -233,9 +253,11 @@ SweepAxis parse_sweep_axis(const std::string& text) {
     double begin = 0.0, end = 0.0;
     int count = 0;
     if (!parse(range.substr(0, first), begin) || !std::isfinite(begin)) throw bad_axis(text, "begin is not a number");
-    if (!parse(range.substr(first + 1, second - first - 1), end) || !std::isfinite(end)) throw bad_axis(text, "end is not a number");
+    if (!parse(range.substr(first + 1, second - first - 1), end) || !std::isfinite(end))
+        throw bad_axis(text, "end is not a number");
     if (!parse(count_text, count)) throw bad_axis(text, "count is not a whole number");
-    if (count < 1 || count > static_cast<int>(most_points)) throw bad_axis(text, fmt::format("a count of {}, at least 1 and at most {}", count, most_points));
+    if (count < 1 || count > static_cast<int>(most_points))
+        throw bad_axis(text, fmt::format("a count of {}, at least 1 and at most {}", count, most_points));
     if (count == 1 && begin != end) throw bad_axis(text, "one value cannot be both begin and end");
     if (count > 1 && begin == end) throw bad_axis(text, "begin and end are the same");
     if (logarithmic && !(begin > 0.0 && end > 0.0)) throw bad_axis(text, "a logarithmic range must be above 0");

@@ -1,9 +1,9 @@
 #pragma once
 // Paint metrics over a grid of recipe keys, point by point, so that an interrupted sweep goes on where it stopped.
 //
-// DIR/points/<key>.json holds one finished point, written whole; the key is a hash of the recipe with the point's values,
-// of its optical constants and of the options, so that points of a changed recipe are never mistaken for this one's.
-// When all points are there, DIR/sweep.h5 and DIR/sweep.csv gather them. Layout: docs/formats/sweep.md.
+// DIR/points/<key>.json holds one finished point, written whole; the key is a hash of the recipe with the point's
+// values, of its optical constants and of the options, so that points of a changed recipe are never mistaken for this
+// one's. When all points are there, DIR/sweep.h5 and DIR/sweep.csv gather them. Layout: docs/formats/sweep.md.
 
 #include <filesystem>
 #include <string>
@@ -42,8 +42,8 @@ struct SweepResult {
     std::vector<std::string> notes;
 };
 
-// Every point's recipe is checked before the first is computed. Throws Error(input) for a recipe that is wrong at a point,
-// Error(usage) for a grid that makes no sense, Error(runtime) for a folder that cannot be written.
+// Every point's recipe is checked before the first is computed. Throws Error(input) for a recipe that is wrong at a
+// point, Error(usage) for a grid that makes no sense, Error(runtime) for a folder that cannot be written.
 SweepResult sweep(const SweepRequest& request, const JobControl& control = {});
 
 }  // namespace patina::jobs

@@ -45,8 +45,12 @@ std::size_t nearest(const std::vector<double>& wavelengths_nm, double wavelength
     return best;
 }
 
-json null_for_nan(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-double nan_for_null(const json& value) { return value.is_null() ? undefined : value.get<double>(); }
+json null_for_nan(double value) {
+    return std::isfinite(value) ? json(value) : json(nullptr);
+}
+double nan_for_null(const json& value) {
+    return value.is_null() ? undefined : value.get<double>();
+}
 
 // Fowler-Noll-Vo hash FNV-1a of 64 bits.
 std::uint64_t hash(std::string_view text) {
@@ -58,8 +62,10 @@ std::uint64_t hash(std::string_view text) {
 // The numbers behind names and files of a recipe, at the wavelengths of interest.
 class Constants {
   public:
-    Constants(const coating::Recipe& recipe, const std::vector<double>& wavelengths_nm) : recipe_(recipe), wavelengths_nm_(wavelengths_nm) {
-        for (const coating::RecipeLayer& layer : recipe.layers) std::visit([&](const auto& content) { add(content); }, layer.content);
+    Constants(const coating::Recipe& recipe, const std::vector<double>& wavelengths_nm)
+        : recipe_(recipe), wavelengths_nm_(wavelengths_nm) {
+        for (const coating::RecipeLayer& layer : recipe.layers)
+            std::visit([&](const auto& content) { add(content); }, layer.content);
         std::visit([&](const auto& base) { add(base); }, recipe.base);
     }
     const std::string& text() const { return text_; }
@@ -77,7 +83,8 @@ class Constants {
     }
     void add(const coating::OpticalLayer& layer) {
         const optics::ExpansionCoefficients& x = layer.expansion;
-        for (const auto* values : {&x.alpha1, &x.alpha2, &x.alpha3, &x.alpha4, &x.beta1, &x.beta2}) text_ += fmt::format("{} ", fmt::join(*values, " "));
+        for (const auto* values : {&x.alpha1, &x.alpha2, &x.alpha3, &x.alpha4, &x.beta1, &x.beta2})
+            text_ += fmt::format("{} ", fmt::join(*values, " "));
     }
     void add(const coating::NoBase&) {}
     void add(const coating::LambertianBase& base) {
@@ -96,7 +103,8 @@ std::vector<SweepQuantity> sweep_quantities(bool optical) {
     const std::string per = optical ? "_per_optical_thickness" : "_per_um", per_unit = optical ? "1" : "1/um";
     return {{"contrast_ratio", "1", "Y over black / Y over white, 45:0, D65, 10 degrees"},
             {"hiding_power_m2_per_l", "m2/l", "spreading rate at the contrast ratio that hides, 45:0"},
-            {optical ? "hiding_optical_thickness" : "hiding_thickness_um", optical ? "1" : "um", "thickness of the scattering layer that hides"},
+            {optical ? "hiding_optical_thickness" : "hiding_thickness_um", optical ? "1" : "um",
+             "thickness of the scattering layer that hides"},
             {"luminous_own_base", "1", "Y over the own base, 45:0, D65, 10 degrees"},
             {"luminous_black", "1", "Y over black, 45:0, D65, 10 degrees"},
             {"luminous_white", "1", "Y over the white card, 45:0, D65, 10 degrees"},
@@ -147,14 +155,16 @@ SweepPoint sweep_point(const PaintMetrics& m) {
 
 std::string sweep_point_key(const coating::Recipe& recipe, const coating::PaintOptions& options) {
     const coating::StackOptions& stack = options.stack;
-    const std::string all =
-        fmt::format("{}\n{}\n{}\n{}\n{} {} {} {} {}\n{}", schema, PATINA_VERSION, recipe.text, fmt::join(stack.wavelengths_nm, " "), stack.tolerance,
-                    stack.streams, stack.solver, options.white_reflectance, options.wanted_contrast_ratio, Constants(recipe, stack.wavelengths_nm).text());
+    const std::string all = fmt::format("{}\n{}\n{}\n{}\n{} {} {} {} {}\n{}", schema, PATINA_VERSION, recipe.text,
+                                        fmt::join(stack.wavelengths_nm, " "), stack.tolerance, stack.streams,
+                                        stack.solver, options.white_reflectance, options.wanted_contrast_ratio,
+                                        Constants(recipe, stack.wavelengths_nm).text());
     return fmt::format("{:016x}", hash(all));
 }
 
-void write_sweep_point(const std::filesystem::path& path, const std::string& key, const std::vector<SweepQuantity>& quantities,
-                       const std::vector<std::string>& settings, const SweepPoint& point) {
+void write_sweep_point(const std::filesystem::path& path, const std::string& key,
+                       const std::vector<SweepQuantity>& quantities, const std::vector<std::string>& settings,
+                       const SweepPoint& point) {
     json values = json::object();
     for (std::size_t q = 0; q < quantities.size(); ++q) values[quantities[q].name] = null_for_nan(point.quantities[q]);
     const json document = {{"schema", schema},
@@ -167,18 +177,21 @@ void write_sweep_point(const std::filesystem::path& path, const std::string& key
     write_text_file(path, document.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
-std::optional<SweepPoint> read_sweep_point(const std::filesystem::path& path, const std::string& key, const std::vector<SweepQuantity>& quantities) {
+std::optional<SweepPoint> read_sweep_point(const std::filesystem::path& path, const std::string& key,
+                                           const std::vector<SweepQuantity>& quantities) {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored)) return std::nullopt;
     try {
         const json document = json::parse(read_text_file(path));
         if (document.at("schema") != schema || document.at("key") != key) return std::nullopt;
         SweepPoint point;
-        for (const SweepQuantity& quantity : quantities) point.quantities.push_back(nan_for_null(document.at("quantities").at(quantity.name)));
+        for (const SweepQuantity& quantity : quantities)
+            point.quantities.push_back(nan_for_null(document.at("quantities").at(quantity.name)));
         point.wavelengths_nm = document.at("wavelengths_nm").get<std::vector<double>>();
         point.reflectance_45_0 = document.at("reflectance_45_0").get<std::vector<double>>();
         point.converged = document.at("converged").get<bool>();
-        if (point.wavelengths_nm.empty() || point.wavelengths_nm.size() != point.reflectance_45_0.size()) return std::nullopt;
+        if (point.wavelengths_nm.empty() || point.wavelengths_nm.size() != point.reflectance_45_0.size())
+            return std::nullopt;
         return point;
     } catch (const json::exception&) {
         return std::nullopt;  // not ours, or edited: it is computed again
