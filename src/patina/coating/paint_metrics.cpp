@@ -38,7 +38,8 @@ double luminous(const std::vector<double>& wavelengths_nm, const std::vector<dou
 ContrastRatio contrast_ratio(const std::vector<double>& wavelengths_nm, const BlackAndWhite& cards) {
     const auto ratio = [&](const std::vector<double>& black, const std::vector<double>& white) {
         const double y_white = luminous(wavelengths_nm, white);
-        return y_white > 0.0 ? luminous(wavelengths_nm, black) / y_white : 1.0;  // perfect blacks do not differ
+        return y_white > 0.0 ? std::max(0.0, luminous(wavelengths_nm, black) / y_white)
+                             : 1.0;  // perfect blacks do not differ
     };
     return {ratio(cards.black.r45_0, cards.white.r45_0), ratio(cards.black.d8_excluded, cards.white.d8_excluded),
             ratio(cards.black.d8_included, cards.white.d8_included)};
