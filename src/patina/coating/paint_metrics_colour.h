@@ -25,7 +25,7 @@ std::span<const Viewing> usual_viewings();
 int observer_deg(spectral::Observer observer);
 
 // XYZ, Y = 1 for the perfect reflecting diffuser, of reflectance factors at ascending wavelengths: straight lines
-// between them, the ends held outside (ASTM E308, 7.3.2.2). One value counts for all wavelengths.
+// between them, the ends held outside (ASTM E308). One value counts for all wavelengths.
 Eigen::Vector3d tristimulus(const std::vector<double>& wavelengths_nm, const std::vector<double>& reflectance,
                             const Viewing& viewing);
 
