@@ -26,6 +26,9 @@ struct Session {
 void add_solve(CLI::App& program, Session& session);
 void add_field(CLI::App& program, Session& session);
 void add_render(CLI::App& program, Session& session);
+void add_paint(CLI::App& program, Session& session);
+void add_sweep(CLI::App& program, Session& session);
+void add_compare(CLI::App& program, Session& session);
 void add_plot(CLI::App& program, Session& session);
 void add_image(CLI::App& program, Session& session);
 void add_inspect(CLI::App& program, Session& session);

@@ -77,6 +77,9 @@ int run(int argc, char** argv) {
     cli::add_plot(program, session);
     cli::add_image(program, session);
     cli::add_inspect(program, session);
+    cli::add_paint(program, session);
+    cli::add_sweep(program, session);
+    cli::add_compare(program, session);
     cli::add_check(program, session);
     cli::add_materials(program, session);
     cli::add_new(program, session);

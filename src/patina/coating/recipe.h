@@ -30,6 +30,7 @@ struct Composition {
     optics::OpticalConstants binder;
     std::vector<Pigment> pigments;
     Packing packing = Packing::automatic;
+    std::optional<double> volume_solids;  // dry volume / volume of the wet paint, (0, 1]
 };
 
 // A layer in optical terms, the same at every wavelength.

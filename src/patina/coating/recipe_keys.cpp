@@ -12,6 +12,7 @@ using enum KeyType;
 constexpr std::array top_keys{
     KeyInfo{"title", text, "", "", "what this coating is, for people"},
     KeyInfo{"extrapolation", text, "", "refuse", "\"refuse\" | \"hold\": what to do outside a material's measured wavelengths (hold is flagged)"},
+    KeyInfo{"volume_solids", number, "1", "", "dry volume / volume of the wet paint, for spreading rates; of layers that give none of their own", 0.0, 1.0, true},
     KeyInfo{"interface", table, "", "", "the top of the coating; omit for an index-matched top"},
     KeyInfo{"layers", array, "", "", "the layers, top to bottom"},
     KeyInfo{"base", table, "", "", "what the coating lies on; omit for none"},
@@ -27,6 +28,7 @@ constexpr std::array layer_keys{
     KeyInfo{"binder", text, "", "", "a built-in material, an n,k file, or { n = 1.5, k = 0 }"},
     KeyInfo{"pigments", array, "", "", "the particles in the binder"},
     KeyInfo{"packing", text, "", "auto", "\"auto\" | \"percus-yevick\" | \"independent\": interference of densely packed particles (auto: from a total volume fraction of 0.05 on)"},
+    KeyInfo{"volume_solids", number, "1", "", "dry volume / volume of the wet paint, for spreading rates", 0.0, 1.0, true},
     KeyInfo{"optical_thickness", number, "1", "", "in place of a composition: extinction optical thickness, may be inf for the lowest layer", 0.0,
             std::numeric_limits<double>::infinity(), false, true},
     KeyInfo{"single_scattering_albedo", number, "1", "", "in place of a composition", 0.0, 1.0},

@@ -56,10 +56,12 @@ Composition read_composition(const TableReader& reader, const Context& context) 
     static constexpr std::string_view optical_keys[] = {"single_scattering_albedo", "expansion", "refractive_index"};
     reader.forbid(optical_keys, "the layer is given by its composition; an optical layer starts with optical_thickness");
 
-    Composition composition{reader.number("thickness_um"), read_material(reader, "binder", context), {}, Packing::automatic};
+    Composition composition{reader.number("thickness_um"), read_material(reader, "binder", context), {}, Packing::automatic, {}};
     const std::string packing = reader.choice("packing", {"auto", "percus-yevick", "independent"});
     if (packing == "percus-yevick") composition.packing = Packing::percus_yevick;
     if (packing == "independent") composition.packing = Packing::independent;
+
+    composition.volume_solids = reader.optional_number("volume_solids");
 
     double total_fraction = 0.0;
     const std::vector<const toml::table*> pigments = reader.tables("pigments");
@@ -74,7 +76,7 @@ Composition read_composition(const TableReader& reader, const Context& context) 
 }
 
 OpticalLayer read_optical_layer(const TableReader& reader, bool is_lowest, const Context& context) {
-    static constexpr std::string_view composition_keys[] = {"thickness_um", "binder", "pigments", "packing"};
+    static constexpr std::string_view composition_keys[] = {"thickness_um", "binder", "pigments", "packing", "volume_solids"};
     reader.forbid(composition_keys, "the layer is given in optical terms (it has optical_thickness)");
 
     OpticalLayer layer{reader.number("optical_thickness"), reader.number("single_scattering_albedo"), {}, reader.optional_number("refractive_index").value_or(1.0)};
@@ -191,6 +193,10 @@ Recipe parse_recipe(const std::string& text, const std::string& name, const fs::
     if (layers.size() > most_layers) throw input_error(reader.where("layers"), fmt::format("{} layers", layers.size()), fmt::format("at most {} make sense", most_layers));
     for (size_t i = 0; i < layers.size(); ++i)
         recipe.layers.push_back(read_layer(*layers[i], fmt::format("layers.{}", i), i + 1 == layers.size(), context));
+    if (const std::optional<double> volume_solids = reader.optional_number("volume_solids"))
+        for (RecipeLayer& layer : recipe.layers)
+            if (Composition* composition = std::get_if<Composition>(&layer.content); composition && !composition->volume_solids)
+                composition->volume_solids = volume_solids;
     recipe.base = read_base(reader.table("base"), context);
 
     std::ostringstream written;

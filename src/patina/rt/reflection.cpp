@@ -99,9 +99,10 @@ Reflection solve_reflection(const Problem& problem, const SolveOptions& options,
     // Solve as many orders at once as there are threads, until two in a row are negligible.
     double largest = 0.0;
     int negligible = 0;
-    std::vector<double> balance(media.order + 1, 0.0);
-    for (int begin = 0; begin <= media.order && negligible < 2;) {
-        const int end = std::min(media.order + 1, begin + std::max(1, thread_count()));
+    const int orders = options.most_fourier_orders > 0 ? std::min(media.order + 1, options.most_fourier_orders) : media.order + 1;
+    std::vector<double> balance(orders, 0.0);
+    for (int begin = 0; begin < orders && negligible < 2;) {
+        const int end = std::min(orders, begin + std::max(1, thread_count()));
         result.modes.resize(end);
         parallel_for(begin, end, [&](std::ptrdiff_t m) {
             Eigen::MatrixXd& mode = result.modes[m];

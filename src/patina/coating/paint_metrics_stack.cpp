@@ -1,0 +1,165 @@
+#include "patina/coating/paint_metrics_stack.h"
+
+#include <limits>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "patina/brdf/interpolation.h"
+#include "patina/coating/optical_problem.h"
+#include "patina/core/constants.h"
+#include "patina/core/contract.h"
+#include "patina/core/parallel.h"
+
+namespace patina::coating {
+
+namespace {
+
+constexpr int fewest_streams = 12, most_streams = 128;
+
+bool scatters_in(const RecipeLayer& layer) {
+    if (const auto* composition = std::get_if<Composition>(&layer.content)) return !composition->pigments.empty();
+    const auto& optical = std::get<OpticalLayer>(layer.content);
+    return optical.single_scattering_albedo > 0.0 && optical.optical_thickness > 0.0;
+}
+
+double thickness_of(const RecipeLayer& layer) {
+    if (const auto* composition = std::get_if<Composition>(&layer.content)) return composition->thickness_um;
+    return std::get<OpticalLayer>(layer.content).optical_thickness;
+}
+
+RecipeLayer with_unit_thickness(RecipeLayer layer) {
+    if (auto* composition = std::get_if<Composition>(&layer.content))
+        composition->thickness_um = 1.0;
+    else
+        std::get<OpticalLayer>(layer.content).optical_thickness = 1.0;
+    return layer;
+}
+
+// Nodes that integrate a phase function of order L exactly, and a decade of the tolerance for every four.
+int chosen_streams(const std::vector<rt::Problem>& problems, const StackOptions& options) {
+    if (options.streams > 0) return options.streams;
+    int order = 0;
+    for (const rt::Problem& problem : problems)
+        for (const rt::Layer& layer : problem.layers) order = std::max(order, layer.expansion.order());
+    const int for_tolerance = static_cast<int>(std::ceil(-4.0 * std::log10(options.tolerance)));
+    return std::clamp(std::max(order / 2 + 2, for_tolerance), fewest_streams, most_streams);
+}
+
+// Reflectance factors from the azimuthal mean of the BRDF, element I <- I.
+struct Geometry {
+    double r45_0, d8, bihemispherical;
+};
+
+Geometry measure(const rt::Reflection& reflection) {
+    const int count = static_cast<int>(reflection.mu.size());
+    const Eigen::MatrixXd& mode = reflection.modes.front();
+    Eigen::MatrixXd f(count, count);
+    for (int o = 0; o < count; ++o)
+        for (int i = 0; i < count; ++i) f(o, i) = mode(4 * o, 4 * i);
+    Eigen::VectorXd flux(count);
+    for (int i = 0; i < count; ++i) flux[i] = 2.0 * pi * reflection.mu[i] * reflection.weights[i];
+
+    const brdf::BarycentricInterpolation interpolation(reflection.mu);
+    const Eigen::VectorXd normal = interpolation.weights(1.0), at_45 = interpolation.weights(std::sqrt(0.5)),
+                          at_8 = interpolation.weights(std::cos(radians(8.0)));
+    // Diffuse light of radiance 1/pi shows the reflectance factor pi L = sum of f cos(theta_i) d omega.
+    return {pi * normal.dot(f * at_45), at_8.dot(f * flux), flux.dot(f * flux) / pi};
+}
+
+}  // namespace
+
+VariableLayer variable_layer(const Recipe& recipe) {
+    const auto found = std::find_if(recipe.layers.begin(), recipe.layers.end(), scatters_in);
+    const bool scatters = found != recipe.layers.end();
+    const RecipeLayer& layer = scatters ? *found : recipe.layers.front();
+    return {static_cast<int>(&layer - recipe.layers.data()), scatters,
+            std::holds_alternative<OpticalLayer>(layer.content)};
+}
+
+VariableStack::VariableStack(const Recipe& recipe, const StackOptions& options, const JobControl& control)
+    : recipe_(recipe), options_(options), solver_(rt::solver_named(options.solver)) {
+    PATINA_EXPECT(!options.wavelengths_nm.empty());
+    layer_ = variable_layer(recipe);
+    thickness_ = thickness_of(recipe.layers[layer_.index]);
+    Recipe unit = recipe;
+    unit.layers[layer_.index] = with_unit_thickness(recipe.layers[layer_.index]);
+
+    // Set up every wavelength.
+    const std::ptrdiff_t count = std::ssize(options.wavelengths_nm);
+    const double scattering_tolerance = std::clamp(0.1 * options.tolerance, 1e-7, 1e-3);
+    std::vector<OpticalProblem> set_up(count);
+    std::atomic<int> done = 0;
+    parallel_for(0, count, [&](std::ptrdiff_t w) {
+        if (control.stop_requested()) return;
+        set_up[w] = optical_problem(unit, options.wavelengths_nm[w], scattering_tolerance);
+        control.report({"scattering", ++done, count, fmt::format("{:g} nm", options.wavelengths_nm[w])});
+    });
+    if (control.stop_requested()) throw Error(ErrorKind::interrupted, "stopped before anything was solved");
+
+    std::set<std::string> notes;
+    for (OpticalProblem& optical : set_up) {
+        if (const std::string reason = solver_.unsupported(optical.problem); !reason.empty())
+            throw Error(ErrorKind::input,
+                        fmt::format("solver \"{}\" cannot do this recipe ({})", solver_.name(), reason));
+        notes.insert(optical.notes.begin(), optical.notes.end());
+        optical_per_length_.push_back(optical.problem.layers[layer_.index].optical_thickness);
+        problems_.push_back(std::move(optical.problem));
+    }
+    notes_.assign(notes.begin(), notes.end());
+    streams_ = chosen_streams(problems_, options);
+}
+
+double VariableStack::transport_scattering(int w) const {
+    const rt::Layer& layer = problems_[w].layers[layer_.index];
+    return optical_per_length_[w] * layer.single_scattering_albedo * (1.0 - layer.expansion.asymmetry());
+}
+
+double VariableStack::absorption(int w) const {
+    return optical_per_length_[w] * (1.0 - problems_[w].layers[layer_.index].single_scattering_albedo);
+}
+
+rt::Problem VariableStack::problem(int w, const Question& question) const {
+    const double thickness = question.thickness.size() == 1 ? question.thickness[0] : question.thickness[w];
+    rt::Problem result = problems_[w];
+    rt::Layer& layer = result.layers[layer_.index];
+    // A layer without extinction stays without, however thick.
+    layer.optical_thickness = optical_per_length_[w] > 0.0 ? optical_per_length_[w] * thickness : 0.0;
+    if (question.lambertian_base) result.base = rt::LambertianBase{*question.lambertian_base};
+    if (question.lambertian_base == 0.0) result.base = rt::BlackBase{};
+
+    if (question.below == Below::nothing || std::isinf(layer.optical_thickness)) result.layers.resize(layer_.index + 1);
+    if (question.above == Above::nothing) {
+        result.layers.erase(result.layers.begin(), result.layers.begin() + layer_.index);
+        if (!recipe_.has_interface) result.refractive_index_above = result.layers.front().refractive_index;
+    }
+    return result;
+}
+
+ReflectanceSpectra VariableStack::solve(const Question& question, const JobControl& control) const {
+    const std::ptrdiff_t count = std::ssize(problems_);
+    PATINA_EXPECT(question.thickness.size() == 1 || std::ssize(question.thickness) == count);
+    rt::SolveOptions options;
+    options.streams = streams_;
+    options.most_fourier_orders = 1;
+    ReflectanceSpectra result;
+    for (auto* values : {&result.r45_0, &result.d8_excluded, &result.d8_included, &result.bihemispherical})
+        values->assign(count, 0.0);
+    const double mu_8 = std::cos(radians(8.0));
+    parallel_for(0, count, [&](std::ptrdiff_t w) {
+        if (control.stop_requested()) return;
+        const rt::Problem at_w = problem(static_cast<int>(w), question);
+        const rt::Reflection reflection = solver_.reflection(at_w, options);
+        if (!reflection.diagnostics.converged) converged_ = false;
+        const Geometry geometry = measure(reflection);
+        result.r45_0[w] = geometry.r45_0;
+        result.d8_excluded[w] = geometry.d8;
+        result.d8_included[w] =
+            geometry.d8 + rt::specular_surface(at_w, mu_8)(0, 0) + rt::specular_coherent(at_w, mu_8)(0, 0);
+        result.bihemispherical[w] = geometry.bihemispherical;
+    });
+    if (control.stop_requested()) throw Error(ErrorKind::interrupted, "stopped");
+    return result;
+}
+
+}  // namespace patina::coating
