@@ -119,7 +119,8 @@ TransferSystem<double> LayerKernel::system(int m, Components components) const {
 
     // Cut what view rays would emit and beam rays receive, then add the extinction.
     for (int i = 0; i < rays; ++i) {
-        if (medium_.roles[i] != Role::quadrature) result.symmetric = false;
+        if (medium_.roles[i] == Role::quadrature) result.quadrature += nc;
+        if (medium_.roles[i] == Role::view) result.views += nc;
         for (Eigen::MatrixXd* matrix : {&result.h, &result.g}) {
             if (medium_.roles[i] == Role::view) matrix->middleCols(i * nc, nc).setZero();
             if (medium_.roles[i] == Role::beam) matrix->middleRows(i * nc, nc).setZero();

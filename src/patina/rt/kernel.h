@@ -28,15 +28,16 @@ struct TransferSystem {
     using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
     using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
-    Matrix h;               // P H
-    Matrix g;               // G P
-    Vector signature;       // the diagonal of P
-    bool symmetric = true;  // no view or beam rays
+    Matrix h;                       // P H
+    Matrix g;                       // G P
+    Vector signature;               // the diagonal of P
+    int quadrature = 0, views = 0;  // unknowns of the quadrature rays, then of the view rays; the rest are beams
     // In a conservative layer H isotropic = 0 and flux^T H = 0; empty otherwise.
     Vector isotropic, flux;
     double smallest_mu = 1.0;
 
     int size() const { return static_cast<int>(signature.size()); }
+    bool symmetric() const { return quadrature == size(); }
 };
 
 // Builds the systems of one layer for every Fourier order.

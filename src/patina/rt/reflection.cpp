@@ -67,16 +67,17 @@ std::vector<int> ascending(const Medium& medium) {
 // diagonal.
 void store(const GroupSolution& group, Components components, const StackMedia& media, const std::vector<int>& order,
            const std::vector<optics::Mueller>& coherent, Eigen::MatrixXd& mode) {
-    const int c = components.count, first = components.first;
-    for (std::size_t i = 0; i < order.size(); ++i)
-        for (std::size_t o = 0; o < order.size(); ++o) {
-            Eigen::MatrixXd block = group.reflection.block(order[o] * c, order[i] * c, c, c);
-            for (int row = 0; row < c; ++row)
-                if (first + row >= 2) block.row(row) = -block.row(row);
-            if (o == i) block -= coherent[i].block(first, first, c, c);
-            mode.block(4 * o + first, 4 * i + first, c, c) =
-                block / (2.0 * pi * media.above.scale[order[o]] * media.above.scale[order[i]]);
-        }
+    const int c = components.count, first = components.first, rays = static_cast<int>(order.size());
+    for (int i = 0; i < rays; ++i)
+        for (int column = 0; column < c; ++column)
+            for (int o = 0; o < rays; ++o)
+                for (int row = 0; row < c; ++row) {
+                    double value = group.reflection(order[o] * c + row, order[i] * c + column);
+                    if (first + row >= 2) value = -value;
+                    if (o == i) value -= coherent[i](first + row, first + column);
+                    mode(4 * o + first + row, 4 * i + first + column) =
+                        value / (2.0 * pi * media.above.scale[order[o]] * media.above.scale[order[i]]);
+                }
 }
 
 }  // namespace

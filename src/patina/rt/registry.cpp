@@ -1,6 +1,7 @@
 #include "patina/core/error.h"
 #include "patina/rt/solver.h"
 #include "patina/rt/solvers/doubling.h"
+#include "patina/rt/solvers/eigenmodes.h"
 
 namespace patina::rt {
 
@@ -8,6 +9,7 @@ const std::vector<std::unique_ptr<Solver>>& solvers() {
     static const auto list = [] {
         std::vector<std::unique_ptr<Solver>> all;
         all.push_back(std::make_unique<Doubling>());
+        all.push_back(std::make_unique<Eigenmodes>());
         return all;
     }();
     return list;

@@ -5,6 +5,7 @@
 
 #include "patina/core/contract.h"
 #include "patina/rt/solvers/parallel_sum.h"
+#include "patina/rt/solvers/signed_cholesky.h"
 
 namespace patina::rt {
 
@@ -36,8 +37,7 @@ TanhCoth<Scalar> thin_layer(const TransferSystem<Scalar>& system, Scalar h, cons
 template <class Scalar>
 void double_thickness(TanhCoth<Scalar>& t, const TransferSystem<Scalar>& system, const Arithmetic<Scalar>& arithmetic) {
     Matrix<Scalar> sum = t.x + t.u;
-    t.x = arithmetic.parallel_difference(t.x, sum);
-    t.x *= 2;
+    t.x = arithmetic.parallel_difference(t.x, sum, 2);
     t.u = sum / 2;
 
     // Keep a conservative layer so: rounding errors of X isotropic = 0 and flux^T X = 0 would double with the
@@ -82,14 +82,31 @@ TanhCoth<Scalar> semi_infinite(const TransferSystem<Scalar>& system, const Arith
     return t;
 }
 
-}  // namespace
+// Adds unknowns that neither scatter nor couple, until the size is a multiple of the block of the factorization.
+template <class Scalar>
+TransferSystem<Scalar> padded(const TransferSystem<Scalar>& system, int size) {
+    TransferSystem<Scalar> result = system;
+    const int n = system.size();
+    for (auto* matrix : {&result.h, &result.g}) {
+        matrix->setIdentity(size, size);
+    }
+    result.h.topLeftCorner(n, n) = system.h;
+    result.g.topLeftCorner(n, n) = system.g;
+    result.signature.setOnes(size);
+    result.signature.head(n) = system.signature;
+    result.quadrature = size;
+    for (auto* vector : {&result.isotropic, &result.flux})
+        if (vector->size() > 0) {
+            vector->conservativeResize(size);
+            vector->tail(size - n).setZero();
+        }
+    return result;
+}
 
 template <class Scalar>
-LayerOperators<Scalar> tanh_doubling(const TransferSystem<Scalar>& system, const LayerRequest& request) {
-    PATINA_EXPECT(request.optical_thickness > 0.0);
-    const Arithmetic<Scalar> arithmetic(system.signature, system.symmetric);
+LayerOperators<Scalar> solve(const TransferSystem<Scalar>& system, const LayerRequest& request) {
+    const Arithmetic<Scalar> arithmetic(system.signature, system.symmetric());
     const bool infinite = std::isinf(request.optical_thickness);
-
     TanhCoth<Scalar> t;
     if (infinite) {
         t = semi_infinite(system, arithmetic);
@@ -108,6 +125,19 @@ LayerOperators<Scalar> tanh_doubling(const TransferSystem<Scalar>& system, const
     result.reflection = (even + odd) * system.signature.asDiagonal();
     result.reflection.diagonal().array() -= Scalar(1);
     if (request.transmission && !infinite) result.transmission = (even - odd) * system.signature.asDiagonal();
+    return result;
+}
+
+}  // namespace
+
+template <class Scalar>
+LayerOperators<Scalar> tanh_doubling(const TransferSystem<Scalar>& system, const LayerRequest& request) {
+    PATINA_EXPECT(request.optical_thickness > 0.0);
+    const int n = system.size(), block = SignedCholesky::block, size = (n + block - 1) / block * block;
+    if (!system.symmetric() || size == n) return solve(system, request);
+    LayerOperators<Scalar> result = solve(padded(system, size), request);
+    result.reflection.conservativeResize(n, n);
+    if (result.transmission.size() > 0) result.transmission.conservativeResize(n, n);
     return result;
 }
 
