@@ -1,6 +1,7 @@
 #pragma once
 // What every solver of the vector radiative transfer equation offers, and the registry of solvers.
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -15,7 +16,9 @@ namespace patina::rt {
 struct SolveOptions {
     int streams = 16;  // quadrature nodes per hemisphere in the medium above (air); denser media add their own
     double fourier_tolerance = 1e-9;  // stop at the Fourier order whose largest element, relative to the BRDF, is below
-    bool scalar = false;              // intensity only (the 1x1 problem), to show what ignoring polarization costs
+    bool scalar = false;          // intensity only (the 1x1 problem), to show what ignoring polarization costs
+    std::int64_t samples = 1'000'000;  // photon packets of a statistical solver; reflection() shares them among incidences
+    std::uint64_t seed = 1;            // of its random numbers; the same seed gives the same bits on any number of threads
 };
 
 struct Diagnostics {
@@ -54,6 +57,8 @@ struct Field {
     // upward[d][o][p], downward[d][o][p]: diffuse Stokes radiance at optical_depths[d], mu_o[o], phi[p].
     // Directions at depth 0 upward are in the medium above; inside and at the bottom they are in the layer.
     std::vector<std::vector<std::vector<optics::Stokes>>> upward, downward;
+    // One standard deviation of each value, same shape; empty for deterministic solvers.
+    std::vector<std::vector<std::vector<optics::Stokes>>> upward_error, downward_error;
     Diagnostics diagnostics;
 };
 
