@@ -1,7 +1,7 @@
 #pragma once
 // Problems that several verification tests solve.
 
-#include "rt_siewert2000_data.h"
+#include "patina/jobs/validation/siewert2000_data.h"
 #include <gtest/gtest.h>
 
 #include "patina/rt/solver.h"
