@@ -35,6 +35,8 @@ void add_inspect(CLI::App& program, Session& session);
 void add_check(CLI::App& program, Session& session);
 void add_materials(CLI::App& program, Session& session);
 void add_new(CLI::App& program, Session& session);
+void add_convert(CLI::App& program, Session& session);
+void add_validate(CLI::App& program, Session& session);
 
 // Numbers of a list "0,10:20:5,45": single values and begin:end:step ranges, both ends included.
 // Throws Error(usage) naming `option` for anything else.

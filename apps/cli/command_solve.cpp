@@ -65,7 +65,9 @@ int run(const Options& options, Session& session) {
                                result.table.wavelengths_nm.size(), result.table.mu.size(), result.table.mu.size(),
                                result.table.body_albedo(result.table.wavelengths_nm[result.table.wavelengths_nm.size() / 2], std::sqrt(0.5)),
                                result.table.wavelengths_nm[result.table.wavelengths_nm.size() / 2]));
-    console.document({{"schema", "patina/solve/1"}, {"output", options.output}, {"plan", to_json(result.plan)},
+    if (!result.table.error_estimate.empty())
+        console.result(fmt::format("error of the body BRDF up to 85 deg at most {:.1e} of its largest value, {} streams", result.relative_error, result.plan.streams));
+    console.document({{"schema", "patina/solve/1"}, {"output", options.output}, {"error_estimate", result.table.error_estimate}, {"relative_error", result.relative_error}, {"plan", to_json(result.plan)},
                       {"interrupted", result.interrupted}, {"converged", result.converged}, {"body", albedos(result.table)}});
     if (result.interrupted) {
         console.note("stopped early: the table holds the wavelengths that were done");

@@ -83,6 +83,8 @@ int run(int argc, char** argv) {
     cli::add_check(program, session);
     cli::add_materials(program, session);
     cli::add_new(program, session);
+    cli::add_convert(program, session);
+    cli::add_validate(program, session);
 
     try {
         program.parse(argc, argv);

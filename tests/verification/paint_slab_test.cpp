@@ -6,7 +6,7 @@
 #include "patina/coating/optical_problem.h"
 #include "patina/core/constants.h"
 #include "patina/jobs/field.h"
-#include "verification/paint_slab_monte_carlo_data.h"
+#include "patina/jobs/validation/paint_slab_data.h"
 
 namespace patina::test {
 namespace {
@@ -29,7 +29,7 @@ size = {{ distribution = "lognormal", median_radius_um = 0.125, sigma_g = 1.3 }}
                        interface ? "[interface]\ntype = \"smooth\"\n" : "", thickness_um, volume_fraction);
 }
 
-void expect_slab(bool interface, std::span<const SlabRow> rows, const std::string& solver) {
+void expect_slab(bool interface, std::span<const paint_slab::Row> rows, const std::string& solver) {
     jobs::FieldJob job;
     job.theta_i_deg = 45.0;
     job.theta_o_deg = {0, 20, 40, 60, 75};
@@ -41,7 +41,7 @@ void expect_slab(bool interface, std::span<const SlabRow> rows, const std::strin
     const jobs::FieldResult result = jobs::field(coating::parse_recipe(recipe(interface), "slab.toml", "."), job);
 
     int compared = 0;
-    for (const SlabRow& row : rows)
+    for (const paint_slab::Row& row : rows)
         for (const jobs::FieldValue& value : result.radiance) {
             if (!value.upward || value.theta_deg != row.theta_o_deg || value.phi_deg != row.phi_deg) continue;
             const optics::Stokes brdf = value.stokes / (pi * std::cos(radians(45.0)));
@@ -54,8 +54,8 @@ void expect_slab(bool interface, std::span<const SlabRow> rows, const std::strin
     EXPECT_EQ(compared, 25);
 }
 
-TEST(PaintSlab, IndexMatchedFollowsTheMonteCarlo) { expect_slab(false, slab_case_a, "doubling"); }
-TEST(PaintSlab, UnderAnInterfaceFollowsTheMonteCarlo) { expect_slab(true, slab_case_b, "doubling"); }
+TEST(PaintSlab, IndexMatchedFollowsTheMonteCarlo) { expect_slab(false, paint_slab::case_a, "doubling"); }
+TEST(PaintSlab, UnderAnInterfaceFollowsTheMonteCarlo) { expect_slab(true, paint_slab::case_b, "doubling"); }
 
 }  // namespace
 }  // namespace patina::test

@@ -3,7 +3,7 @@
 #include <map>
 #include <tuple>
 
-#include "rt_natraj2009_data.h"
+#include "patina/jobs/validation/natraj2009_data.h"
 #include "rt_problems.h"
 
 #include "patina/core/constants.h"

@@ -1,7 +1,7 @@
 // Every printed value of Siewert (2000), problem IIA, by every registered solver.
 
 #include "rt_problems.h"
-#include "rt_siewert2000_data.h"
+#include "patina/jobs/validation/siewert2000_data.h"
 
 #include "patina/core/constants.h"
 

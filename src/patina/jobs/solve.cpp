@@ -9,6 +9,7 @@
 #include "patina/core/constants.h"
 #include "patina/core/error.h"
 #include "patina/core/parallel.h"
+#include "patina/jobs/stream_choice.h"
 #include "patina/version.h"
 
 namespace patina::jobs {
@@ -16,9 +17,6 @@ namespace patina::jobs {
 namespace {
 
 using coating::OpticalProblem;
-
-constexpr int fewest_streams = 12;
-constexpr int most_streams = 128;
 
 void check_wavelengths(const std::vector<double>& wavelengths_nm) {
     for (size_t i = 0; i < wavelengths_nm.size(); ++i) {
@@ -55,32 +53,38 @@ std::vector<OpticalProblem> set_up(const coating::Recipe& recipe, const std::vec
     return problems;
 }
 
-int largest_order(const std::vector<OpticalProblem>& problems) {
+int order_of(const OpticalProblem& optical) {
     int order = 0;
-    for (const OpticalProblem& optical : problems)
-        for (const rt::Layer& layer : optical.problem.layers) order = std::max(order, layer.expansion.order());
+    for (const rt::Layer& layer : optical.problem.layers) order = std::max(order, layer.expansion.order());
     return order;
 }
 
-// Gauss nodes that integrate a phase function of order L exactly (degree 2N - 1 >= L) and two digits more a node.
-int chosen_streams(const SolveRequest& request, int expansion_order) {
-    if (request.streams != 0) {
-        if (request.streams < 2 || request.streams > 512)
-            throw Error(ErrorKind::usage, fmt::format("--streams {}: 2 to 512 make sense", request.streams));
-        return request.streams;
-    }
-    const int for_phase_function = expansion_order / 2 + 2;
-    const int for_tolerance = static_cast<int>(std::ceil(-4.0 * std::log10(request.tolerance)));
-    return std::clamp(std::max(for_phase_function, for_tolerance), fewest_streams, most_streams);
+// A solver whose values scatter has no streams to choose, and its error is no difference of two solutions.
+bool is_statistical(const rt::Solver& solver) { return solver.name() == "montecarlo"; }
+
+// Share of the largest element at which Fourier series stop.
+double fourier_tolerance(const SolveRequest& request) { return std::clamp(1e-2 * request.tolerance, 1e-10, 1e-5); }
+
+// The wavelengths to choose streams at: both ends, the middle, and the one whose phase function has most orders.
+std::vector<size_t> pilot_wavelengths(const std::vector<OpticalProblem>& problems) {
+    size_t widest = 0;
+    for (size_t w = 0; w < problems.size(); ++w)
+        if (order_of(problems[w]) > order_of(problems[widest])) widest = w;
+    const std::set<size_t> pilots{0, problems.size() / 2, problems.size() - 1, widest};
+    return {pilots.begin(), pilots.end()};
 }
 
-SolvePlan make_plan(const std::vector<double>& wavelengths_nm, const std::vector<OpticalProblem>& problems, const SolveRequest& request) {
-    SolvePlan plan{wavelengths_nm, 0, largest_order(problems), {}};
-    plan.streams = chosen_streams(request, plan.largest_expansion_order);
+void check_streams(int streams) {
+    if (streams != 0 && (streams < 2 || streams > 512)) throw Error(ErrorKind::usage, fmt::format("--streams {}: 2 to 512 make sense", streams));
+}
+
+SolvePlan make_plan(const std::vector<double>& wavelengths_nm, const std::vector<OpticalProblem>& problems) {
+    SolvePlan plan{wavelengths_nm, 0, 0, {}};
     std::set<std::string> notes;
-    for (const OpticalProblem& optical : problems) notes.insert(optical.notes.begin(), optical.notes.end());
-    if (plan.streams == most_streams && request.streams == 0)
-        notes.insert(fmt::format("the phase function has {} orders; streams are capped at {}", plan.largest_expansion_order, most_streams));
+    for (const OpticalProblem& optical : problems) {
+        plan.largest_expansion_order = std::max(plan.largest_expansion_order, order_of(optical));
+        notes.insert(optical.notes.begin(), optical.notes.end());
+    }
     plan.notes.assign(notes.begin(), notes.end());
     return plan;
 }
@@ -108,6 +112,7 @@ void keep_only(brdf::MuellerTable& table, const std::vector<char>& keep) {
     filter(table.body);
     filter(table.specular_surface);
     filter(table.specular_coherent);
+    if (!table.error_estimate.empty()) filter(table.error_estimate);
 }
 
 brdf::Provenance provenance(const coating::Recipe& recipe, const SolveRequest& request, const SolvePlan& plan) {
@@ -115,66 +120,172 @@ brdf::Provenance provenance(const coating::Recipe& recipe, const SolveRequest& r
     for (size_t i = 0; i < plan.notes.size(); ++i) p.notes[fmt::format("note_{:02}", i)] = plan.notes[i];
     p.notes["streams"] = std::to_string(plan.streams);
     p.notes["tolerance"] = fmt::format("{:g}", request.tolerance);
+    p.notes["error_estimate"] = fmt::format("upper bound of the error of any element of the body BRDF for zenith angles up to {:g} deg, 1/sr", largest_judged_zenith_deg);
     return p;
+}
+
+// One run of the table's wavelengths with a number of streams.
+struct Run {
+    int streams = 0;
+    std::vector<rt::Reflection> reflections;
+    std::vector<char> done;
+    // Between the nodes, where the error is estimated: largest f00, and the difference from half the streams.
+    std::vector<double> scale, difference_from_half;
+    std::vector<brdf::MuellerGrid> pilots;  // of the pilot wavelengths
+};
+
+class Solving {
+  public:
+    Solving(const coating::Recipe& recipe, const SolveRequest& request, const JobControl& control)
+        : request_(request),
+          control_(control),
+          solver_(rt::solver_named(request.solver)),
+          wavelengths_nm_(chosen_wavelengths(recipe, request)),
+          problems_(set_up(recipe, wavelengths_nm_, request, control)),
+          references_(solver_, recipe, wavelengths_nm_, scattering_tolerance(request), fourier_tolerance(request)),
+          pilots_(pilot_wavelengths(problems_)) {
+        check_streams(request.streams);
+        for (const OpticalProblem& optical : problems_) {
+            rt::validate(optical.problem);
+            if (const std::string reason = solver_.unsupported(optical.problem); !reason.empty())
+                throw Error(ErrorKind::input, fmt::format("solver \"{}\" cannot do this recipe ({})", solver_.name(), reason));
+        }
+    }
+
+    SolvePlan plan() {
+        SolvePlan plan = make_plan(wavelengths_nm_, problems_);
+        plan.streams = request_.streams;
+        if (plan.streams == 0) plan.streams = is_statistical(solver_) ? 16 : choose_streams(references_, pilots_, request_.tolerance, control_);
+        return plan;
+    }
+
+    SolveResult run(const coating::Recipe& recipe);
+
+  private:
+    Run solve_all(int streams);
+    // Upper bounds of the error at each wavelength, 1/sr.
+    std::vector<double> estimate(const Run& run);
+    double direct_estimate(const Run& run, size_t w);
+    bool within_tolerance(const Run& run, size_t w, double error) const { return error <= request_.tolerance * run.scale[w]; }
+    void fill(brdf::MuellerTable& table, Run& run) const;
+
+    const SolveRequest& request_;
+    const JobControl& control_;
+    const rt::Solver& solver_;
+    std::vector<double> wavelengths_nm_;
+    std::vector<OpticalProblem> problems_;
+    References references_;
+    std::vector<size_t> pilots_;
+};
+
+Run Solving::solve_all(int streams) {
+    const std::ptrdiff_t count = std::ssize(problems_);
+    Run run{streams, std::vector<rt::Reflection>(count), std::vector<char>(count, 0), std::vector<double>(count), std::vector<double>(count), {}};
+    run.pilots.resize(count);
+    std::atomic<int> finished = 0;
+    const rt::SolveOptions options{.streams = streams, .fourier_tolerance = fourier_tolerance(request_)};
+    const rt::SolveOptions half{.streams = half_streams(streams), .fourier_tolerance = fourier_tolerance(request_)};
+    parallel_for(0, count, [&](std::ptrdiff_t w) {
+        if (control_.stop_requested()) return;
+        run.reflections[w] = solver_.reflection(problems_[w].problem, options);
+        if (!is_statistical(solver_)) {
+            brdf::MuellerGrid grid = between_nodes(run.reflections[w]);
+            run.scale[w] = largest_intensity(grid);
+            run.difference_from_half[w] = largest_difference(grid, between_nodes(solver_.reflection(problems_[w].problem, half)));
+            if (std::binary_search(pilots_.begin(), pilots_.end(), static_cast<size_t>(w))) run.pilots[w] = std::move(grid);
+        }
+        run.done[w] = 1;
+        control_.report({"solving", ++finished, count, fmt::format("{:g} nm", wavelengths_nm_[w])});
+    });
+    return run;
+}
+
+double Solving::direct_estimate(const Run& run, size_t w) {
+    const int finer = finer_streams(run.streams);
+    references_.prepare({w}, finer, control_);
+    return error_bound(run.difference_from_half[w], largest_difference(between_nodes(run.reflections[w]), references_.at(w, finer)));
+}
+
+// Compare the pilots with references of more streams. Elsewhere the difference from half the streams tells how the error
+// varies with wavelength: its ratio to the error is taken from the neighbouring pilots, the less favourable of the two.
+std::vector<double> Solving::estimate(const Run& run) {
+    references_.prepare(pilots_, finer_streams(run.streams), control_);
+    std::vector<double> error(problems_.size(), 0.0), ratio;
+    for (const size_t w : pilots_) {
+        error[w] = error_bound(run.difference_from_half[w], largest_difference(run.pilots[w], references_.at(w, finer_streams(run.streams))));
+        ratio.push_back(run.difference_from_half[w] > 0.0 ? error[w] / run.difference_from_half[w] : 0.0);
+    }
+    for (size_t w = 0; w < problems_.size(); ++w) {
+        const size_t above = std::lower_bound(pilots_.begin(), pilots_.end(), w) - pilots_.begin();
+        if (pilots_[above] != w) error[w] = run.difference_from_half[w] * std::max(ratio[above - 1], ratio[above]);
+        if (!within_tolerance(run, w, error[w])) error[w] = direct_estimate(run, w);
+    }
+    return error;
+}
+
+void Solving::fill(brdf::MuellerTable& table, Run& run) const {
+    table.wavelengths_nm = wavelengths_nm_;
+    table.body.resize(problems_.size());
+    table.specular_surface.resize(problems_.size());
+    table.specular_coherent.resize(problems_.size());
+    for (int i = 0; i <= 180; ++i) table.specular_theta_deg.push_back(0.5 * i);
+    const auto first = std::find(run.done.begin(), run.done.end(), 1) - run.done.begin();
+    table.mu = run.reflections[first].mu;
+    table.mu_weights = run.reflections[first].weights;
+    for (size_t w = 0; w < problems_.size(); ++w) {
+        table.body[w].modes = std::move(run.reflections[w].modes);
+        fill_specular(table, problems_[w].problem, w);
+    }
+    keep_only(table, run.done);
+}
+
+SolveResult Solving::run(const coating::Recipe& recipe) {
+    SolveResult result;
+    result.plan = plan();
+    int& streams = result.plan.streams;
+
+    // Solve, and again with more streams while a wavelength's error is too large.
+    Run run;
+    std::vector<double> error;
+    for (;;) {
+        run = solve_all(streams);
+        result.interrupted = std::find(run.done.begin(), run.done.end(), 0) != run.done.end();
+        if (result.interrupted || is_statistical(solver_)) break;
+        try {
+            error = estimate(run);
+        } catch (const Error& stop) {
+            if (stop.kind() != ErrorKind::interrupted) throw;
+            result.interrupted = true;
+            break;
+        }
+        result.converged = true;
+        for (size_t w = 0; w < error.size(); ++w) {
+            result.converged = result.converged && within_tolerance(run, w, error[w]);
+            if (run.scale[w] > 0.0) result.relative_error = std::max(result.relative_error, error[w] / run.scale[w]);
+        }
+        if (result.converged || request_.streams != 0 || streams >= most_streams) break;
+        streams = std::min(most_streams, streams + std::max(2, streams / 4));
+        result.relative_error = 0.0;
+    }
+    if (std::find(run.done.begin(), run.done.end(), 1) == run.done.end()) throw Error(ErrorKind::interrupted, "stopped before anything was solved");
+
+    if (!result.converged)
+        result.plan.notes.push_back(fmt::format("the error is up to {:.1e} of the largest f00 with {} streams, above the tolerance of {:g}", result.relative_error, streams, request_.tolerance));
+    // Whoever sets the streams gets what was asked for, with its error.
+    if (request_.streams != 0) result.converged = true;
+    result.table.error_estimate = error;
+    fill(result.table, run);
+    result.table.provenance = provenance(recipe, request_, result.plan);
+    result.table.validate();
+    return result;
 }
 
 }  // namespace
 
-SolvePlan plan_solve(const coating::Recipe& recipe, const SolveRequest& request) {
-    const std::vector<double> wavelengths = chosen_wavelengths(recipe, request);
-    return make_plan(wavelengths, set_up(recipe, wavelengths, request, {}), request);
-}
+SolvePlan plan_solve(const coating::Recipe& recipe, const SolveRequest& request) { return Solving(recipe, request, {}).plan(); }
 
 SolveResult solve(const coating::Recipe& recipe, const SolveRequest& request, const JobControl& control) {
-    // Set up every wavelength's problem and choose one set of directions for all.
-    const rt::Solver& solver = rt::solver_named(request.solver);
-    const std::vector<double> wavelengths = chosen_wavelengths(recipe, request);
-    const std::vector<OpticalProblem> problems = set_up(recipe, wavelengths, request, control);
-    SolveResult result;
-    result.plan = make_plan(wavelengths, problems, request);
-    for (const OpticalProblem& optical : problems) {
-        rt::validate(optical.problem);
-        if (const std::string reason = solver.unsupported(optical.problem); !reason.empty())
-            throw Error(ErrorKind::input, fmt::format("solver \"{}\" cannot do this recipe ({})", solver.name(), reason));
-    }
-
-    // Solve wavelength by wavelength.
-    rt::SolveOptions options;
-    options.streams = result.plan.streams;
-    options.fourier_tolerance = std::min(1e-6, 1e-3 * request.tolerance);
-    brdf::MuellerTable& table = result.table;
-    const std::ptrdiff_t count = std::ssize(problems);
-    table.wavelengths_nm = wavelengths;
-    table.body.resize(count);
-    table.specular_surface.resize(count);
-    table.specular_coherent.resize(count);
-    for (int i = 0; i <= 180; ++i) table.specular_theta_deg.push_back(0.5 * i);
-
-    std::vector<rt::Reflection> reflections(count);
-    std::vector<char> done(count, 0);
-    std::atomic<int> finished = 0;
-    parallel_for(0, count, [&](std::ptrdiff_t w) {
-        if (control.stop_requested()) return;
-        reflections[w] = solver.reflection(problems[w].problem, options);
-        fill_specular(table, problems[w].problem, w);
-        done[w] = 1;
-        control.report({"solving", ++finished, count, fmt::format("{:g} nm", wavelengths[w])});
-    });
-
-    // Gather what is done into the table.
-    const auto first = std::find(done.begin(), done.end(), 1);
-    if (first == done.end()) throw Error(ErrorKind::interrupted, "stopped before anything was solved");
-    table.mu = reflections[first - done.begin()].mu;
-    table.mu_weights = reflections[first - done.begin()].weights;
-    for (std::ptrdiff_t w = 0; w < count; ++w) {
-        result.converged = result.converged && (!done[w] || reflections[w].diagnostics.converged);
-        table.body[w].modes = std::move(reflections[w].modes);
-    }
-    result.interrupted = std::find(done.begin(), done.end(), 0) != done.end();
-    keep_only(table, done);
-    table.provenance = provenance(recipe, request, result.plan);
-    table.validate();
-    return result;
+    return Solving(recipe, request, control).run(recipe);
 }
 
 }  // namespace patina::jobs

@@ -14,7 +14,9 @@ namespace patina::jobs {
 struct SolveRequest {
     std::vector<double> wavelengths_nm;  // ascending; empty = 380 to 780 nm every 5 nm, or one for a recipe without colour
     int streams = 0;                     // quadrature nodes per hemisphere in air; 0 = chosen from the tolerance
-    double tolerance = 1e-3;             // relative, of the BRDF
+    // Largest error of any element of the body BRDF between zenith angles of 0 and 85 deg, both ways, in units of the largest
+    // f00 there at the same wavelength.
+    double tolerance = 1e-3;
     std::string solver = "doubling";
     std::string command;                 // for provenance
 };
@@ -27,10 +29,11 @@ struct SolvePlan {
 };
 
 struct SolveResult {
-    brdf::MuellerTable table;
+    brdf::MuellerTable table;  // with its error estimate, an upper bound in 1/sr; statistical solvers give none
     SolvePlan plan;
-    bool interrupted = false;  // the table holds the wavelengths that were done
-    bool converged = true;
+    bool interrupted = false;     // the table holds the wavelengths that were done
+    bool converged = true;        // every wavelength's error estimate is within the tolerance
+    double relative_error = 0.0;  // largest error estimate in the units of `tolerance`
 };
 
 // What solve() would do, without solving.

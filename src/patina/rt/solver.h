@@ -68,6 +68,9 @@ class Solver {
     virtual ~Solver() = default;
     virtual std::string_view name() const = 0;
     virtual std::string_view summary() const = 0;
+    // True when the answers have random errors, and field() tells them: such a solver is held to its own error bars
+    // (tests/cross), not to the digits of a table.
+    virtual bool is_statistical() const { return false; }
     // Empty when the solver can do the problem, else the reason it cannot, for the user.
     virtual std::string unsupported(const Problem& problem) const = 0;
     virtual Reflection reflection(const Problem& problem, const SolveOptions& options) const = 0;

@@ -146,6 +146,7 @@ class MonteCarloSolver final : public Solver {
     std::string_view summary() const override {
         return "polarized Monte Carlo with electric-field frames; independent of the other solvers, with error bars";
     }
+    bool is_statistical() const override { return true; }
     std::string unsupported(const Problem&) const override { return {}; }
     Reflection reflection(const Problem& problem, const SolveOptions& options) const override;
     Field field(const Problem& problem, const FieldRequest& request, const SolveOptions& options) const override;

@@ -3,16 +3,16 @@
 // TiO2-like spheres m = 2.75, log-normal by number (median 0.125 um, sigma_g 1.3), host 1.495, 550 nm, tau = 1, black base,
 // unpolarized light at 45 deg. Value = exit Stokes radiance / irradiance on the slab, 1/sr, signs of docs/conventions.md.
 
-namespace patina::test {
+namespace patina::paint_slab {
 
-struct SlabRow {
+struct Row {
     double theta_o_deg, phi_deg;
     double stokes[4];  // I, Q, U, V
     double sigma[4];   // one standard error of each
 };
 
 // Case A: index-matched top.
-inline constexpr SlabRow slab_case_a[] = {
+inline constexpr Row case_a[] = {
     {0, 0, {4.756901e-02, 8.382191e-03, 0.000000e+00, 0.000000e+00}, {4.90e-06, 1.88e-06, 0.00e+00, 0.00e+00}},
     {0, 45, {4.756901e-02, 0.000000e+00, 8.382191e-03, 0.000000e+00}, {4.90e-06, 0.00e+00, 1.88e-06, 0.00e+00}},
     {0, 90, {4.756901e-02, -8.382191e-03, 0.000000e+00, 0.000000e+00}, {4.90e-06, 1.88e-06, 0.00e+00, 0.00e+00}},
@@ -41,7 +41,7 @@ inline constexpr SlabRow slab_case_a[] = {
 };
 
 // Case B: smooth interface to air, specular reflection left out.
-inline constexpr SlabRow slab_case_b[] = {
+inline constexpr Row case_b[] = {
     {0, 0, {2.110360e-02, 2.607472e-03, 0.000000e+00, 0.000000e+00}, {1.77e-06, 6.28e-07, 0.00e+00, 0.00e+00}},
     {0, 45, {2.110360e-02, 0.000000e+00, 2.607472e-03, 0.000000e+00}, {1.77e-06, 0.00e+00, 6.28e-07, 0.00e+00}},
     {0, 90, {2.110360e-02, -2.607472e-03, 0.000000e+00, 0.000000e+00}, {1.77e-06, 6.28e-07, 0.00e+00, 0.00e+00}},
@@ -69,4 +69,4 @@ inline constexpr SlabRow slab_case_b[] = {
     {75, 180, {2.519638e-02, 5.637249e-03, 0.000000e+00, 0.000000e+00}, {2.06e-06, 8.39e-07, 0.00e+00, 0.00e+00}},
 };
 
-}  // namespace patina::test
+}  // namespace patina::paint_slab

@@ -1,0 +1,44 @@
+#include "patina/jobs/table_accuracy.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "patina/core/constants.h"
+#include "patina/core/contract.h"
+
+namespace patina::jobs {
+
+namespace {
+
+// Interpolation polynomials err most near the ends of the cosine's range, where these angles lie closest in cosine.
+constexpr double zenith_angles_deg[] = {0, 3, 17, 29, 39, 48, 56, 62, 67, 71, 74.5, 78, 81, 83.5, largest_judged_zenith_deg};
+
+}  // namespace
+
+brdf::MuellerGrid between_nodes(const rt::Reflection& reflection) {
+    std::vector<double> mu, phi;
+    for (const double angle_deg : zenith_angles_deg) mu.push_back(std::cos(radians(angle_deg)));
+    for (int k = 0; k < 10; ++k) phi.push_back(radians(20.0 * k));
+    brdf::MuellerTable table;
+    table.wavelengths_nm = {550.0};
+    table.mu = reflection.mu;
+    table.mu_weights = reflection.weights;
+    table.body = {{reflection.modes}};
+    return table.evaluate_grid(550.0, mu, mu, phi);
+}
+
+double largest_difference(const brdf::MuellerGrid& a, const brdf::MuellerGrid& b) {
+    PATINA_EXPECT(a.values.size() == b.values.size());
+    double largest = 0.0;
+    for (std::size_t k = 0; k < a.values.size(); ++k)
+        largest = std::max(largest, (a.values[k] - b.values[k]).cwiseAbs().maxCoeff());
+    return largest;
+}
+
+double largest_intensity(const brdf::MuellerGrid& grid) {
+    double largest = 0.0;
+    for (const optics::Mueller& value : grid.values) largest = std::max(largest, value(0, 0));
+    return largest;
+}
+
+}  // namespace patina::jobs

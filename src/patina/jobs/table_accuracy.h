@@ -1,0 +1,21 @@
+#pragma once
+// How far the table of a reflection is from the converged BRDF, judged between its nodes by a finer solution.
+
+#include "patina/brdf/mueller_table.h"
+#include "patina/rt/solver.h"
+
+namespace patina::jobs {
+
+// Directions up to this zenith angle, incident and outgoing, are judged. Nearer to grazing the body BRDF of an
+// index-matched layer is singular (it grows like 1/(mu_o + mu_i)) and no finite table follows it.
+inline constexpr double largest_judged_zenith_deg = 85.0;
+
+// The table's BRDF on a fixed grid of directions that are nodes of no quadrature: 15 x 15 zenith angles up to
+// largest_judged_zenith_deg, closer where polynomials err most, and 10 azimuths from 0 to 180 deg.
+brdf::MuellerGrid between_nodes(const rt::Reflection& reflection);
+
+// Largest difference of any Mueller element, and the largest f00, 1/sr.
+double largest_difference(const brdf::MuellerGrid& a, const brdf::MuellerGrid& b);
+double largest_intensity(const brdf::MuellerGrid& grid);
+
+}  // namespace patina::jobs
