@@ -1,7 +1,7 @@
 #pragma once
-// Natraj, Li & Yung (2009) ApJ 691, 1909-1920: corrected Coulson-Dave-Sekera tables of a conservative Rayleigh layer over a
-// Lambertian base, unpolarized beam of flux pi through a plane normal to it. Subset of the archived tables. Q and U have
-// Chandrasekhar's signs, opposite to this project's.
+// Natraj, Li & Yung (2009) ApJ 691, 1909-1920: corrected Coulson-Dave-Sekera tables of a conservative Rayleigh layer
+// over a Lambertian base, unpolarized beam of flux pi through a plane normal to it. Subset of the archived tables. Q
+// and U have Chandrasekhar's signs, opposite to this project's.
 
 namespace patina::natraj2009 {
 

@@ -1,9 +1,9 @@
 #pragma once
-// Siewert (2000) JQSRT 64, 227-254, problem IIA: a slab of oblate spheroids (scattering law of Kuik, de Haan & Hovenier 1992,
-// JQSRT 47, 477; also Wauben & Hovenier 1992, JQSRT 47, 491), optical thickness 1, single-scattering albedo 0.973527, black
-// base, unpolarized beam of flux pi through a plane normal to it at cosine 0.6. The digits are those of VLIDORT 2.8.3's
-// validation of the paper's tables 2-9 (30 streams): allow one unit of the last digit. Signs are the paper's:
-// Q = I_par - I_perp, azimuth from the propagation direction of the beam.
+// Siewert (2000) JQSRT 64, 227-254, problem IIA: a slab of oblate spheroids (scattering law of Kuik, de Haan & Hovenier
+// 1992, JQSRT 47, 477; also Wauben & Hovenier 1992, JQSRT 47, 491), optical thickness 1, single-scattering albedo
+// 0.973527, black base, unpolarized beam of flux pi through a plane normal to it at cosine 0.6. The digits are those of
+// VLIDORT 2.8.3's validation of the paper's tables 2-9 (30 streams): allow one unit of the last digit. Signs are the
+// paper's: Q = I_par - I_perp, azimuth from the propagation direction of the beam.
 
 #include <array>
 
@@ -31,15 +31,18 @@ inline constexpr double coefficients[12][6] = {
 
 inline constexpr std::array<double, 7> optical_depths{0.0, 0.125, 0.25, 0.5, 0.75, 0.875, 1.0};
 
-// Tables 2-9: rows are the propagation cosine u against the inward normal, -1.0 (0.1) -0.0 (upward), 0.0 (0.1) 1.0 (downward).
+// Tables 2-9: rows are the propagation cosine u against the inward normal, -1.0 (0.1) -0.0 (upward), 0.0 (0.1) 1.0
+// (downward).
 struct Table {
     int number;
-    int stokes;       // 0 I, 1 Q, 2 U, 3 V
+    int stokes;  // 0 I, 1 Q, 2 U, 3 V
     double phi_deg;
     double values[22][7];
 };
 inline constexpr Table tables[] = {
-    {2, 0, 0,
+    {2,
+     0,
+     0,
      {
          {5.06874E-02, 4.26590E-02, 3.45653E-02, 1.97274E-02, 7.87444E-03, 3.36769E-03, 0.00000E+00},
          {9.31376E-02, 7.94053E-02, 6.49881E-02, 3.77006E-02, 1.51276E-02, 6.39107E-03, 0.00000E+00},
@@ -64,7 +67,9 @@ inline constexpr Table tables[] = {
          {0.00000E+00, 1.53983E-01, 2.77491E-01, 4.49583E-01, 5.46313E-01, 5.73783E-01, 5.90163E-01},
          {0.00000E+00, 4.54883E-02, 8.60067E-02, 1.53100E-01, 2.03659E-01, 2.23430E-01, 2.39760E-01},
      }},
-    {3, 1, 0,
+    {3,
+     1,
+     0,
      {
          {-2.62389E-03, -2.11089E-03, -1.63443E-03, -8.51294E-04, -3.07301E-04, -1.23575E-04, 0.00000E+00},
          {-6.21108E-03, -5.22959E-03, -4.19045E-03, -2.30412E-03, -8.42624E-04, -3.19935E-04, 0.00000E+00},
@@ -89,7 +94,9 @@ inline constexpr Table tables[] = {
          {0.00000E+00, -7.65293E-03, -1.32406E-02, -1.95935E-02, -2.15730E-02, -2.15180E-02, -2.09886E-02},
          {0.00000E+00, -6.29414E-03, -1.11544E-02, -1.75869E-02, -2.08985E-02, -2.17389E-02, -2.21768E-02},
      }},
-    {4, 0, 90,
+    {4,
+     0,
+     90,
      {
          {5.06873E-02, 4.26589E-02, 3.45653E-02, 1.97273E-02, 7.87443E-03, 3.36768E-03, 0.00000E+00},
          {6.19358E-02, 5.29317E-02, 4.34998E-02, 2.54886E-02, 1.03835E-02, 4.45134E-03, 0.00000E+00},
@@ -114,7 +121,9 @@ inline constexpr Table tables[] = {
          {0.00000E+00, 4.09882E-02, 7.87342E-02, 1.43218E-01, 1.92910E-01, 2.12398E-01, 2.28341E-01},
          {0.00000E+00, 4.54880E-02, 8.60062E-02, 1.53099E-01, 2.03658E-01, 2.23429E-01, 2.39759E-01},
      }},
-    {5, 1, 90,
+    {5,
+     1,
+     90,
      {
          {2.62388E-03, 2.11088E-03, 1.63442E-03, 8.51291E-04, 3.07300E-04, 1.23574E-04, 0.00000E+00},
          {2.78623E-03, 2.21987E-03, 1.69697E-03, 8.46122E-04, 2.80937E-04, 1.06325E-04, 0.00000E+00},
@@ -139,7 +148,9 @@ inline constexpr Table tables[] = {
          {0.00000E+00, 4.65455E-03, 8.29234E-03, 1.32437E-02, 1.59585E-02, 1.67186E-02, 1.71810E-02},
          {0.00000E+00, 6.29411E-03, 1.11544E-02, 1.75869E-02, 2.08984E-02, 2.17389E-02, 2.21768E-02},
      }},
-    {6, 2, 90,
+    {6,
+     2,
+     90,
      {
          {-9.43933E-09, -7.88789E-09, -6.31258E-09, -3.45005E-09, -1.23770E-09, -4.66431E-10, 0.00000E+00},
          {-2.70682E-03, -2.32098E-03, -1.90171E-03, -1.09314E-03, -4.19776E-04, -1.66426E-04, 0.00000E+00},
@@ -164,7 +175,9 @@ inline constexpr Table tables[] = {
          {0.00000E+00, -3.40711E-03, -6.03854E-03, -9.59532E-03, -1.15695E-02, -1.21429E-02, -1.25068E-02},
          {0.00000E+00, -1.63609E-08, -2.88295E-08, -4.52812E-08, -5.40254E-08, -5.64400E-08, -5.78905E-08},
      }},
-    {7, 3, 90,
+    {7,
+     3,
+     90,
      {
          {-4.57507E-10, -4.52433E-10, -4.05451E-10, -2.60817E-10, -1.04331E-10, -3.92849E-11, 0.00000E+00},
          {-8.99395E-05, -9.45319E-05, -8.87138E-05, -6.20642E-05, -2.77337E-05, -1.15977E-05, 0.00000E+00},
@@ -189,7 +202,9 @@ inline constexpr Table tables[] = {
          {0.00000E+00, -1.48020E-05, -3.79271E-05, -8.17611E-05, -1.07733E-04, -1.12021E-04, -1.08944E-04},
          {0.00000E+00, -6.44623E-11, -1.73271E-10, -3.90774E-10, -5.32245E-10, -5.63657E-10, -5.61945E-10},
      }},
-    {8, 0, 180,
+    {8,
+     0,
+     180,
      {
          {5.06872E-02, 4.26589E-02, 3.45652E-02, 1.97273E-02, 7.87442E-03, 3.36768E-03, 0.00000E+00},
          {4.49363E-02, 3.83950E-02, 3.16314E-02, 1.87386E-02, 7.81148E-03, 3.42290E-03, 0.00000E+00},
@@ -214,7 +229,9 @@ inline constexpr Table tables[] = {
          {0.00000E+00, 1.31130E-02, 2.72720E-02, 5.64093E-02, 8.41720E-02, 9.68474E-02, 1.08352E-01},
          {0.00000E+00, 4.54878E-02, 8.60058E-02, 1.53099E-01, 2.03657E-01, 2.23428E-01, 2.39758E-01},
      }},
-    {9, 1, 180,
+    {9,
+     1,
+     180,
      {
          {-2.62387E-03, -2.11087E-03, -1.63442E-03, -8.51287E-04, -3.07299E-04, -1.23574E-04, 0.00000E+00},
          {-2.63222E-04, -1.87243E-04, -1.27675E-04, -6.34884E-05, -3.60705E-05, -2.07293E-05, 0.00000E+00},
@@ -241,8 +258,8 @@ inline constexpr Table tables[] = {
      }},
 };
 
-// The same with more digits (VLIDORT 2.8.3, 30 streams, Fourier series to 1e-13; |u| = 0 run at 1e-6): its own 24 and 30
-// stream results differ by 1.9e-7, 4.9e-9, 2.9e-9, 2.8e-10 in I, Q, U, V.
+// The same with more digits (VLIDORT 2.8.3, 30 streams, Fourier series to 1e-13; |u| = 0 run at 1e-6): its own 24 and
+// 30 stream results differ by 1.9e-7, 4.9e-9, 2.9e-9, 2.8e-10 in I, Q, U, V.
 struct Radiance {
     double optical_depth;
     bool upward;
