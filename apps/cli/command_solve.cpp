@@ -1,6 +1,6 @@
+#include "command.h"
 #include <fmt/format.h>
 
-#include "command.h"
 #include "patina/core/error.h"
 #include "patina/core/files.h"
 #include "patina/io/table_hdf5.h"
@@ -20,21 +20,26 @@ struct Options {
 };
 
 void print_plan(const Console& console, const jobs::SolvePlan& plan) {
-    console.result(fmt::format("wavelengths  {} from {:g} to {:g} nm", plan.wavelengths_nm.size(), plan.wavelengths_nm.front(),
-                               plan.wavelengths_nm.back()));
-    console.result(fmt::format("streams      {} per hemisphere (expansion order {})", plan.streams, plan.largest_expansion_order));
+    console.result(fmt::format("wavelengths  {} from {:g} to {:g} nm", plan.wavelengths_nm.size(),
+                               plan.wavelengths_nm.front(), plan.wavelengths_nm.back()));
+    console.result(
+        fmt::format("streams      {} per hemisphere (expansion order {})", plan.streams, plan.largest_expansion_order));
     for (const std::string& note : plan.notes) console.result("note         " + note);
 }
 
 nlohmann::json to_json(const jobs::SolvePlan& plan) {
-    return {{"wavelengths_nm", plan.wavelengths_nm}, {"streams", plan.streams}, {"expansion_order", plan.largest_expansion_order}, {"notes", plan.notes}};
+    return {{"wavelengths_nm", plan.wavelengths_nm},
+            {"streams", plan.streams},
+            {"expansion_order", plan.largest_expansion_order},
+            {"notes", plan.notes}};
 }
 
 // A band of the visible in steps of the table, for a quick look at colour.
 nlohmann::json albedos(const brdf::MuellerTable& table) {
     nlohmann::json rows = nlohmann::json::array();
     for (const double wavelength : table.wavelengths_nm)
-        rows.push_back({{"wavelength_nm", wavelength}, {"reflectance_45_deg", table.body_albedo(wavelength, std::sqrt(0.5))}});
+        rows.push_back(
+            {{"wavelength_nm", wavelength}, {"reflectance_45_deg", table.body_albedo(wavelength, std::sqrt(0.5))}});
     return rows;
 }
 
@@ -61,14 +66,23 @@ int run(const Options& options, Session& session) {
     io::write_table_hdf5(result.table, options.output);
     console.end_progress();
     for (const std::string& note : result.plan.notes) console.note("note: " + note);
-    console.result(fmt::format("{}: {} wavelengths, {} x {} directions, body reflectance at 45 deg {:.4f} ({:g} nm)", options.output,
-                               result.table.wavelengths_nm.size(), result.table.mu.size(), result.table.mu.size(),
-                               result.table.body_albedo(result.table.wavelengths_nm[result.table.wavelengths_nm.size() / 2], std::sqrt(0.5)),
-                               result.table.wavelengths_nm[result.table.wavelengths_nm.size() / 2]));
+    console.result(fmt::format(
+        "{}: {} wavelengths, {} x {} directions, body reflectance at 45 deg {:.4f} ({:g} nm)", options.output,
+        result.table.wavelengths_nm.size(), result.table.mu.size(), result.table.mu.size(),
+        result.table.body_albedo(result.table.wavelengths_nm[result.table.wavelengths_nm.size() / 2], std::sqrt(0.5)),
+        result.table.wavelengths_nm[result.table.wavelengths_nm.size() / 2]));
     if (!result.table.error_estimate.empty())
-        console.result(fmt::format("error of the body BRDF up to 85 deg at most {:.1e} of its largest value, {} streams", result.relative_error, result.plan.streams));
-    console.document({{"schema", "patina/solve/1"}, {"output", options.output}, {"error_estimate", result.table.error_estimate}, {"relative_error", result.relative_error}, {"plan", to_json(result.plan)},
-                      {"interrupted", result.interrupted}, {"converged", result.converged}, {"body", albedos(result.table)}});
+        console.result(
+            fmt::format("error of the body BRDF up to 85 deg at most {:.1e} of its largest value, {} streams",
+                        result.relative_error, result.plan.streams));
+    console.document({{"schema", "patina/solve/1"},
+                      {"output", options.output},
+                      {"error_estimate", result.table.error_estimate},
+                      {"relative_error", result.relative_error},
+                      {"plan", to_json(result.plan)},
+                      {"interrupted", result.interrupted},
+                      {"converged", result.converged},
+                      {"body", albedos(result.table)}});
     if (result.interrupted) {
         console.note("stopped early: the table holds the wavelengths that were done");
         return static_cast<int>(ErrorKind::interrupted);
@@ -81,14 +95,20 @@ int run(const Options& options, Session& session) {
 
 void add_solve(CLI::App& program, Session& session) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = program.add_subcommand("solve", "compute the 4x4 Mueller BRDF of a recipe, wavelength by wavelength");
+    CLI::App* command =
+        program.add_subcommand("solve", "compute the 4x4 Mueller BRDF of a recipe, wavelength by wavelength");
     command->add_option("recipe", options->recipe, "paint recipe (TOML)")->required();
     command->add_option("-o,--output", options->output, "BRDF table to write (HDF5)");
     command->add_option("--wavelengths", options->wavelengths, "vacuum wavelengths in nm: 380:780:5 or 450,550,650");
-    command->add_option("--streams", options->streams, "quadrature nodes per hemisphere in air (default: from the tolerance)");
-    command->add_option("--tolerance", options->tolerance, "relative accuracy wanted")->check(CLI::Range(1e-8, 0.1))->capture_default_str();
+    command->add_option("--streams", options->streams,
+                        "quadrature nodes per hemisphere in air (default: from the tolerance)");
+    command->add_option("--tolerance", options->tolerance, "relative accuracy wanted")
+        ->check(CLI::Range(1e-8, 0.1))
+        ->capture_default_str();
     command->add_option("--solver", options->solver, "doubling | eigenmodes")->capture_default_str();
-    command->add_option("--set", options->settings, "change a key of the recipe: layers.0.thickness_um=30 (repeatable)")->take_all()->allow_extra_args(false);
+    command->add_option("--set", options->settings, "change a key of the recipe: layers.0.thickness_um=30 (repeatable)")
+        ->take_all()
+        ->allow_extra_args(false);
     command->add_flag("--dry-run", options->dry_run, "say what would be done");
     command->footer("example: patina solve examples/tio2_on_aluminium.toml -o tio2.h5 --wavelengths 400:700:10");
     command->callback([options, &session] { session.chosen = [options, &session] { return run(*options, session); }; });

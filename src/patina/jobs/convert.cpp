@@ -45,7 +45,8 @@ std::vector<DirectionSample> random_directions(int count) {
             return Eigen::Vector3d(s * std::cos(azimuth), s * std::sin(azimuth), mu);
         };
         const double mu_i = lowest + (1 - lowest) * uniform(random), mu_o = lowest + (1 - lowest) * uniform(random);
-        brdf::DirectionPair pair = brdf::directions(brdf::half_angles(direction(mu_i, 0.0), direction(mu_o, 2 * pi * uniform(random))));
+        brdf::DirectionPair pair =
+            brdf::directions(brdf::half_angles(direction(mu_i, 0.0), direction(mu_o, 2 * pi * uniform(random))));
         samples.push_back({pair, mu_o, mu_i, brdf::relative_azimuth(pair)});
     }
     return samples;
@@ -71,7 +72,8 @@ class ErrorSum {
     int count_ = 0;
 };
 
-ConversionError mueller_error(const brdf::BodyFunction& expected, const brdf::BodyFunction& found, const std::vector<double>& wavelengths_nm) {
+ConversionError mueller_error(const brdf::BodyFunction& expected, const brdf::BodyFunction& found,
+                              const std::vector<double>& wavelengths_nm) {
     constexpr int count = 500;
     ErrorSum sum;
     for (const DirectionSample& s : random_directions(count))
@@ -83,10 +85,14 @@ ConversionError mueller_error(const brdf::BodyFunction& expected, const brdf::Bo
 }
 
 brdf::BodyFunction function_of(const MuellerTable& table) {
-    return [&table](double wavelength, double mu_o, double mu_i, double phi) { return table.evaluate(wavelength, mu_o, mu_i, phi); };
+    return [&table](double wavelength, double mu_o, double mu_i, double phi) {
+        return table.evaluate(wavelength, mu_o, mu_i, phi);
+    };
 }
 brdf::BodyFunction function_of(const brdf::HalfAngleTable& table) {
-    return [&table](double wavelength, double mu_o, double mu_i, double phi) { return table.evaluate_meridian(wavelength, mu_o, mu_i, phi); };
+    return [&table](double wavelength, double mu_o, double mu_i, double phi) {
+        return table.evaluate_meridian(wavelength, mu_o, mu_i, phi);
+    };
 }
 
 ConvertResult write_pbsdf(const MuellerTable& table, const ConvertRequest& request) {
@@ -97,7 +103,8 @@ ConvertResult write_pbsdf(const MuellerTable& table, const ConvertRequest& reque
     grid.wavelengths_nm = request.wavelengths_nm;
     ConvertResult result;
     if (!grid.wavelengths_nm.empty() && grid.wavelengths_nm.size() != 5)
-        result.notes.push_back(fmt::format("Mitsuba 3 reads exactly five wavelengths; this file has {}", grid.wavelengths_nm.size()));
+        result.notes.push_back(
+            fmt::format("Mitsuba 3 reads exactly five wavelengths; this file has {}", grid.wavelengths_nm.size()));
     io::write_table_pbsdf(brdf::to_half_angles(table, grid), request.output);
     const brdf::HalfAngleTable written = io::read_table_pbsdf(request.output);
     result.wavelengths_nm = written.wavelengths_nm;
@@ -111,8 +118,10 @@ Eigen::Matrix3Xd rgb_weights(const std::vector<double>& wavelengths_nm) {
     for (Eigen::Index w = 0; w < weights.cols(); ++w) {
         const auto hat = [&](double wavelength) {
             const double here = wavelengths_nm[w];
-            if (wavelength <= here) return w == 0 ? 1.0 : std::max(0.0, 1 - (here - wavelength) / (here - wavelengths_nm[w - 1]));
-            return w + 1 == weights.cols() ? 1.0 : std::max(0.0, 1 - (wavelength - here) / (wavelengths_nm[w + 1] - here));
+            if (wavelength <= here)
+                return w == 0 ? 1.0 : std::max(0.0, 1 - (here - wavelength) / (here - wavelengths_nm[w - 1]));
+            return w + 1 == weights.cols() ? 1.0
+                                           : std::max(0.0, 1 - (wavelength - here) / (wavelengths_nm[w + 1] - here));
         };
         weights.col(w) = spectral::xyz_to_linear_srgb(spectral::xyz_of_reflectance(hat, spectral::illuminant_d65()));
     }
@@ -135,7 +144,8 @@ ConvertResult write_merl(const MuellerTable& table, const ConvertRequest& reques
     ErrorSum sum;
     for (const DirectionSample& s : random_directions(count)) {
         Eigen::Vector3d expected = Eigen::Vector3d::Zero();
-        for (Eigen::Index w = 0; w < weights.cols(); ++w) expected += weights.col(w) * table.evaluate(table.wavelengths_nm[w], s.mu_o, s.mu_i, s.phi)(0, 0);
+        for (Eigen::Index w = 0; w < weights.cols(); ++w)
+            expected += weights.col(w) * table.evaluate(table.wavelengths_nm[w], s.mu_o, s.mu_i, s.phi)(0, 0);
         expected = expected.cwiseMax(0.0);
         sum.add(expected, written.evaluate(brdf::half_angles(s.pair.i, s.pair.o)), expected.maxCoeff());
     }
@@ -147,7 +157,8 @@ ConvertResult write_merl(const MuellerTable& table, const ConvertRequest& reques
 MuellerTable at_wavelengths(const MuellerTable& table, const std::vector<double>& wavelengths_nm) {
     if (wavelengths_nm.empty()) return table;
     brdf::TabulateOptions options{wavelengths_nm, static_cast<int>(table.mu.size()), 1};
-    for (const brdf::BodyModes& body : table.body) options.orders = std::max(options.orders, static_cast<int>(body.modes.size()));
+    for (const brdf::BodyModes& body : table.body)
+        options.orders = std::max(options.orders, static_cast<int>(body.modes.size()));
     return brdf::tabulate(function_of(table), options);
 }
 
@@ -177,15 +188,21 @@ MuellerTable read_input(const ConvertRequest& request, std::optional<brdf::HalfA
         return modes_of(*half_angles, request.wavelengths_nm);
     }
     if (extension == ".binary")
-        throw Error(ErrorKind::usage, fmt::format("{}: a MERL file has colours but no spectrum and no polarization to make another table from", request.input.string()));
-    throw Error(ErrorKind::usage, fmt::format("{}: unknown format \"{}\" (a BRDF table to read is .h5 or .pbsdf)", request.input.string(), extension));
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("{}: a MERL file has colours but no spectrum and no polarization to make another table from",
+                        request.input.string()));
+    throw Error(ErrorKind::usage, fmt::format("{}: unknown format \"{}\" (a BRDF table to read is .h5 or .pbsdf)",
+                                              request.input.string(), extension));
 }
 
 void check_wavelengths(const std::vector<double>& wavelengths_nm, double lowest_nm, double highest_nm) {
     for (std::size_t k = 0; k < wavelengths_nm.size(); ++k) {
-        if (k > 0 && wavelengths_nm[k] <= wavelengths_nm[k - 1]) throw Error(ErrorKind::usage, "--wavelengths must ascend");
+        if (k > 0 && wavelengths_nm[k] <= wavelengths_nm[k - 1])
+            throw Error(ErrorKind::usage, "--wavelengths must ascend");
         if (wavelengths_nm[k] < lowest_nm || wavelengths_nm[k] > highest_nm)
-            throw Error(ErrorKind::usage, fmt::format("{:g} nm lies outside the table ({:g} to {:g} nm)", wavelengths_nm[k], lowest_nm, highest_nm));
+            throw Error(ErrorKind::usage, fmt::format("{:g} nm lies outside the table ({:g} to {:g} nm)",
+                                                      wavelengths_nm[k], lowest_nm, highest_nm));
     }
 }
 
@@ -195,12 +212,16 @@ ConvertResult convert(const ConvertRequest& request) {
     const std::string target = request.output.extension().string();
     const bool has_grid = request.phi_d || request.theta_d || request.theta_h;
     if (target != ".h5" && target != ".pbsdf" && target != ".binary" && target != ".csv")
-        throw Error(ErrorKind::usage, fmt::format("{}: unknown format \"{}\" (a BRDF table to write is .h5, .pbsdf, .binary or .csv)", request.output.string(), target));
-    if (has_grid && target != ".pbsdf") throw Error(ErrorKind::usage, "--grid sets the grid of a .pbsdf file; other formats have a fixed one");
+        throw Error(ErrorKind::usage,
+                    fmt::format("{}: unknown format \"{}\" (a BRDF table to write is .h5, .pbsdf, .binary or .csv)",
+                                request.output.string(), target));
+    if (has_grid && target != ".pbsdf")
+        throw Error(ErrorKind::usage, "--grid sets the grid of a .pbsdf file; other formats have a fixed one");
 
     std::optional<brdf::HalfAngleTable> half_angles;
     const MuellerTable table = read_input(request, half_angles);
-    if (!half_angles) check_wavelengths(request.wavelengths_nm, table.wavelengths_nm.front(), table.wavelengths_nm.back());
+    if (!half_angles)
+        check_wavelengths(request.wavelengths_nm, table.wavelengths_nm.front(), table.wavelengths_nm.back());
 
     ConvertResult result;
     if (target == ".pbsdf") result = write_pbsdf(table, request);
@@ -210,13 +231,17 @@ ConvertResult convert(const ConvertRequest& request) {
         const MuellerTable output = half_angles ? table : at_wavelengths(table, request.wavelengths_nm);
         io::write_table_hdf5(output, request.output);
         result.wavelengths_nm = output.wavelengths_nm;
-        result.error = half_angles ? mueller_error(function_of(*half_angles), function_of(output), output.wavelengths_nm)
-                                   : mueller_error(function_of(table), function_of(output), output.wavelengths_nm);
+        result.error = half_angles
+                           ? mueller_error(function_of(*half_angles), function_of(output), output.wavelengths_nm)
+                           : mueller_error(function_of(table), function_of(output), output.wavelengths_nm);
     }
-    if (half_angles) result.notes.emplace_back("the half-angle grid was brought to 24 cosine nodes and 32 Fourier orders");
+    if (half_angles)
+        result.notes.emplace_back("the half-angle grid was brought to 24 cosine nodes and 32 Fourier orders");
     if (half_angles && target != ".h5") {
-        const ConversionError through = mueller_error(function_of(*half_angles), function_of(table), table.wavelengths_nm);
-        result.notes.push_back(fmt::format("that step errs by {:.1e} 1/sr at most, {:.1e} rms, at {} random directions", through.largest, through.rms, through.directions));
+        const ConversionError through =
+            mueller_error(function_of(*half_angles), function_of(table), table.wavelengths_nm);
+        result.notes.push_back(fmt::format("that step errs by {:.1e} 1/sr at most, {:.1e} rms, at {} random directions",
+                                           through.largest, through.rms, through.directions));
     }
     return result;
 }

@@ -22,9 +22,11 @@ void check_wavelengths(const std::vector<double>& wavelengths_nm) {
     for (size_t i = 0; i < wavelengths_nm.size(); ++i) {
         const double wavelength = wavelengths_nm[i];
         if (!(wavelength >= 100.0 && wavelength <= 1e6))
-            throw Error(ErrorKind::usage, fmt::format("a wavelength of {:g} nm (100 nm to 1 mm make sense)", wavelength));
+            throw Error(ErrorKind::usage,
+                        fmt::format("a wavelength of {:g} nm (100 nm to 1 mm make sense)", wavelength));
         if (i > 0 && wavelength <= wavelengths_nm[i - 1])
-            throw Error(ErrorKind::usage, fmt::format("wavelengths must ascend ({:g} nm follows {:g} nm)", wavelength, wavelengths_nm[i - 1]));
+            throw Error(ErrorKind::usage, fmt::format("wavelengths must ascend ({:g} nm follows {:g} nm)", wavelength,
+                                                      wavelengths_nm[i - 1]));
     }
 }
 
@@ -37,8 +39,15 @@ std::vector<double> chosen_wavelengths(const coating::Recipe& recipe, const Solv
     return visible;
 }
 
-// Relative accuracy asked of single scattering: a tenth of the table's, so that it never dominates.
-double scattering_tolerance(const SolveRequest& request) { return std::clamp(0.1 * request.tolerance, 1e-7, 1e-3); }
+// Relative accuracy asked of cross sections and expansion coefficients, and the largest share of f00 that it was seen
+// to leave in the BRDF (1.6, narrow resonances of a coarse pigment), doubled.
+double scattering_tolerance(const SolveRequest& request) {
+    return std::clamp(0.01 * request.tolerance, 1e-7, 1e-4);
+}
+constexpr double scattering_amplification = 3.2;
+
+// Share of the tolerance left to the streams.
+constexpr double stream_share = 0.96;
 
 std::vector<OpticalProblem> set_up(const coating::Recipe& recipe, const std::vector<double>& wavelengths_nm,
                                    const SolveRequest& request, const JobControl& control) {
@@ -60,10 +69,14 @@ int order_of(const OpticalProblem& optical) {
 }
 
 // A solver whose values scatter has no streams to choose, and its error is no difference of two solutions.
-bool is_statistical(const rt::Solver& solver) { return solver.name() == "montecarlo"; }
+bool is_statistical(const rt::Solver& solver) {
+    return solver.name() == "montecarlo";
+}
 
 // Share of the largest element at which Fourier series stop.
-double fourier_tolerance(const SolveRequest& request) { return std::clamp(1e-2 * request.tolerance, 1e-10, 1e-5); }
+double fourier_tolerance(const SolveRequest& request) {
+    return std::clamp(1e-2 * request.tolerance, 1e-10, 1e-5);
+}
 
 // The wavelengths to choose streams at: both ends, the middle, and the one whose phase function has most orders.
 std::vector<size_t> pilot_wavelengths(const std::vector<OpticalProblem>& problems) {
@@ -75,7 +88,8 @@ std::vector<size_t> pilot_wavelengths(const std::vector<OpticalProblem>& problem
 }
 
 void check_streams(int streams) {
-    if (streams != 0 && (streams < 2 || streams > 512)) throw Error(ErrorKind::usage, fmt::format("--streams {}: 2 to 512 make sense", streams));
+    if (streams != 0 && (streams < 2 || streams > 512))
+        throw Error(ErrorKind::usage, fmt::format("--streams {}: 2 to 512 make sense", streams));
 }
 
 SolvePlan make_plan(const std::vector<double>& wavelengths_nm, const std::vector<OpticalProblem>& problems) {
@@ -116,11 +130,14 @@ void keep_only(brdf::MuellerTable& table, const std::vector<char>& keep) {
 }
 
 brdf::Provenance provenance(const coating::Recipe& recipe, const SolveRequest& request, const SolvePlan& plan) {
-    brdf::Provenance p{request.command, recipe.text, recipe.path, std::string("patina ") + PATINA_VERSION, request.solver, {}};
+    brdf::Provenance p{request.command, recipe.text, recipe.path, std::string("patina ") + PATINA_VERSION,
+                       request.solver,  {}};
     for (size_t i = 0; i < plan.notes.size(); ++i) p.notes[fmt::format("note_{:02}", i)] = plan.notes[i];
     p.notes["streams"] = std::to_string(plan.streams);
     p.notes["tolerance"] = fmt::format("{:g}", request.tolerance);
-    p.notes["error_estimate"] = fmt::format("upper bound of the error of any element of the body BRDF for zenith angles up to {:g} deg, 1/sr", largest_judged_zenith_deg);
+    p.notes["error_estimate"] =
+        fmt::format("upper bound of the error of any element of the body BRDF for zenith angles up to {:g} deg, 1/sr",
+                    largest_judged_zenith_deg);
     return p;
 }
 
@@ -148,14 +165,18 @@ class Solving {
         for (const OpticalProblem& optical : problems_) {
             rt::validate(optical.problem);
             if (const std::string reason = solver_.unsupported(optical.problem); !reason.empty())
-                throw Error(ErrorKind::input, fmt::format("solver \"{}\" cannot do this recipe ({})", solver_.name(), reason));
+                throw Error(ErrorKind::input,
+                            fmt::format("solver \"{}\" cannot do this recipe ({})", solver_.name(), reason));
         }
     }
 
     SolvePlan plan() {
         SolvePlan plan = make_plan(wavelengths_nm_, problems_);
         plan.streams = request_.streams;
-        if (plan.streams == 0) plan.streams = is_statistical(solver_) ? 16 : choose_streams(references_, pilots_, request_.tolerance, control_);
+        if (plan.streams == 0)
+            plan.streams = is_statistical(solver_)
+                               ? 16
+                               : choose_streams(references_, pilots_, stream_share * request_.tolerance, control_);
         return plan;
     }
 
@@ -165,8 +186,10 @@ class Solving {
     Run solve_all(int streams);
     // Upper bounds of the error at each wavelength, 1/sr.
     std::vector<double> estimate(const Run& run);
-    double direct_estimate(const Run& run, size_t w);
-    bool within_tolerance(const Run& run, size_t w, double error) const { return error <= request_.tolerance * run.scale[w]; }
+    double stream_error(const Run& run, size_t w);
+    bool within_tolerance(const Run& run, size_t w, double error) const {
+        return error <= request_.tolerance * run.scale[w];
+    }
     void fill(brdf::MuellerTable& table, Run& run) const;
 
     const SolveRequest& request_;
@@ -180,7 +203,12 @@ class Solving {
 
 Run Solving::solve_all(int streams) {
     const std::ptrdiff_t count = std::ssize(problems_);
-    Run run{streams, std::vector<rt::Reflection>(count), std::vector<char>(count, 0), std::vector<double>(count), std::vector<double>(count), {}};
+    Run run{streams,
+            std::vector<rt::Reflection>(count),
+            std::vector<char>(count, 0),
+            std::vector<double>(count),
+            std::vector<double>(count),
+            {}};
     run.pilots.resize(count);
     std::atomic<int> finished = 0;
     const rt::SolveOptions options{.streams = streams, .fourier_tolerance = fourier_tolerance(request_)};
@@ -191,8 +219,10 @@ Run Solving::solve_all(int streams) {
         if (!is_statistical(solver_)) {
             brdf::MuellerGrid grid = between_nodes(run.reflections[w]);
             run.scale[w] = largest_intensity(grid);
-            run.difference_from_half[w] = largest_difference(grid, between_nodes(solver_.reflection(problems_[w].problem, half)));
-            if (std::binary_search(pilots_.begin(), pilots_.end(), static_cast<size_t>(w))) run.pilots[w] = std::move(grid);
+            run.difference_from_half[w] =
+                largest_difference(grid, between_nodes(solver_.reflection(problems_[w].problem, half)));
+            if (std::binary_search(pilots_.begin(), pilots_.end(), static_cast<size_t>(w)))
+                run.pilots[w] = std::move(grid);
         }
         run.done[w] = 1;
         control_.report({"solving", ++finished, count, fmt::format("{:g} nm", wavelengths_nm_[w])});
@@ -200,25 +230,38 @@ Run Solving::solve_all(int streams) {
     return run;
 }
 
-double Solving::direct_estimate(const Run& run, size_t w) {
+// The part of the error that more streams would take away, from solutions of finer single scattering.
+double Solving::stream_error(const Run& run, size_t w) {
     const int finer = finer_streams(run.streams);
+    references_.prepare({w}, run.streams, control_);
     references_.prepare({w}, finer, control_);
-    return error_bound(run.difference_from_half[w], largest_difference(between_nodes(run.reflections[w]), references_.at(w, finer)));
+    return error_bound(run.difference_from_half[w],
+                       largest_difference(references_.at(w, run.streams), references_.at(w, finer)));
 }
 
-// Compare the pilots with references of more streams. Elsewhere the difference from half the streams tells how the error
-// varies with wavelength: its ratio to the error is taken from the neighbouring pilots, the less favourable of the two.
+// Compare the pilots with references of more streams. Elsewhere the difference from half the streams tells how the
+// error varies with wavelength: its ratio to the error is taken from the neighbouring pilots, the less favourable of
+// the two. What single scattering leaves is added in proportion to f00.
 std::vector<double> Solving::estimate(const Run& run) {
-    references_.prepare(pilots_, finer_streams(run.streams), control_);
+    for (const int streams : {run.streams, finer_streams(run.streams)}) references_.prepare(pilots_, streams, control_);
     std::vector<double> error(problems_.size(), 0.0), ratio;
+    double scattering_share = scattering_amplification * scattering_tolerance(request_);
     for (const size_t w : pilots_) {
-        error[w] = error_bound(run.difference_from_half[w], largest_difference(run.pilots[w], references_.at(w, finer_streams(run.streams))));
+        error[w] = stream_error(run, w);
         ratio.push_back(run.difference_from_half[w] > 0.0 ? error[w] / run.difference_from_half[w] : 0.0);
+        if (run.scale[w] > 0.0)
+            scattering_share =
+                std::max(scattering_share,
+                         2.0 * largest_difference(run.pilots[w], references_.at(w, run.streams)) / run.scale[w]);
     }
     for (size_t w = 0; w < problems_.size(); ++w) {
         const size_t above = std::lower_bound(pilots_.begin(), pilots_.end(), w) - pilots_.begin();
-        if (pilots_[above] != w) error[w] = run.difference_from_half[w] * std::max(ratio[above - 1], ratio[above]);
-        if (!within_tolerance(run, w, error[w])) error[w] = direct_estimate(run, w);
+        const double scattering = scattering_share * run.scale[w];
+        if (pilots_[above] != w) {
+            error[w] = run.difference_from_half[w] * std::max(ratio[above - 1], ratio[above]);
+            if (!within_tolerance(run, w, error[w] + scattering)) error[w] = stream_error(run, w);
+        }
+        error[w] += scattering;
     }
     return error;
 }
@@ -247,7 +290,8 @@ SolveResult Solving::run(const coating::Recipe& recipe) {
     // Solve, and again with more streams while a wavelength's error is too large.
     Run run;
     std::vector<double> error;
-    for (;;) {
+    constexpr int most_attempts = 4;
+    for (int attempt = 1;; ++attempt) {
         run = solve_all(streams);
         result.interrupted = std::find(run.done.begin(), run.done.end(), 0) != run.done.end();
         if (result.interrupted || is_statistical(solver_)) break;
@@ -263,14 +307,17 @@ SolveResult Solving::run(const coating::Recipe& recipe) {
             result.converged = result.converged && within_tolerance(run, w, error[w]);
             if (run.scale[w] > 0.0) result.relative_error = std::max(result.relative_error, error[w] / run.scale[w]);
         }
-        if (result.converged || request_.streams != 0 || streams >= most_streams) break;
+        if (result.converged || request_.streams != 0 || streams >= most_streams || attempt == most_attempts) break;
         streams = std::min(most_streams, streams + std::max(2, streams / 4));
         result.relative_error = 0.0;
     }
-    if (std::find(run.done.begin(), run.done.end(), 1) == run.done.end()) throw Error(ErrorKind::interrupted, "stopped before anything was solved");
+    if (std::find(run.done.begin(), run.done.end(), 1) == run.done.end())
+        throw Error(ErrorKind::interrupted, "stopped before anything was solved");
 
     if (!result.converged)
-        result.plan.notes.push_back(fmt::format("the error is up to {:.1e} of the largest f00 with {} streams, above the tolerance of {:g}", result.relative_error, streams, request_.tolerance));
+        result.plan.notes.push_back(
+            fmt::format("the error is up to {:.1e} of the largest f00 with {} streams, above the tolerance of {:g}",
+                        result.relative_error, streams, request_.tolerance));
     // Whoever sets the streams gets what was asked for, with its error.
     if (request_.streams != 0) result.converged = true;
     result.table.error_estimate = error;
@@ -282,7 +329,9 @@ SolveResult Solving::run(const coating::Recipe& recipe) {
 
 }  // namespace
 
-SolvePlan plan_solve(const coating::Recipe& recipe, const SolveRequest& request) { return Solving(recipe, request, {}).plan(); }
+SolvePlan plan_solve(const coating::Recipe& recipe, const SolveRequest& request) {
+    return Solving(recipe, request, {}).plan();
+}
 
 SolveResult solve(const coating::Recipe& recipe, const SolveRequest& request, const JobControl& control) {
     return Solving(recipe, request, control).run(recipe);

@@ -12,13 +12,14 @@
 namespace patina::jobs {
 
 struct SolveRequest {
-    std::vector<double> wavelengths_nm;  // ascending; empty = 380 to 780 nm every 5 nm, or one for a recipe without colour
-    int streams = 0;                     // quadrature nodes per hemisphere in air; 0 = chosen from the tolerance
-    // Largest error of any element of the body BRDF between zenith angles of 0 and 85 deg, both ways, in units of the largest
-    // f00 there at the same wavelength.
+    std::vector<double>
+        wavelengths_nm;  // ascending; empty = 380 to 780 nm every 5 nm, or one for a recipe without colour
+    int streams = 0;     // quadrature nodes per hemisphere in air; 0 = chosen from the tolerance
+    // Largest error of any element of the body BRDF between zenith angles of 0 and 85 deg, both ways, in units of the
+    // largest f00 there at the same wavelength.
     double tolerance = 1e-3;
     std::string solver = "doubling";
-    std::string command;                 // for provenance
+    std::string command;  // for provenance
 };
 
 struct SolvePlan {
@@ -40,7 +41,8 @@ struct SolveResult {
 SolvePlan plan_solve(const coating::Recipe& recipe, const SolveRequest& request);
 
 // Wavelengths run in parallel; the result does not depend on the number of threads.
-// Throws Error(input) for what the recipe or the solver cannot do, Error(interrupted) when stopped before anything is done.
+// Throws Error(input) for what the recipe or the solver cannot do, Error(interrupted) when stopped before anything is
+// done.
 SolveResult solve(const coating::Recipe& recipe, const SolveRequest& request, const JobControl& control = {});
 
 }  // namespace patina::jobs

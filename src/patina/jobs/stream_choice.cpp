@@ -9,15 +9,17 @@
 
 namespace patina::jobs {
 
-References::References(const rt::Solver& solver, const coating::Recipe& recipe, const std::vector<double>& wavelengths_nm, double scattering_tolerance,
-                       double fourier_tolerance)
+References::References(const rt::Solver& solver, const coating::Recipe& recipe,
+                       const std::vector<double>& wavelengths_nm, double scattering_tolerance, double fourier_tolerance)
     : solver_(solver),
       recipe_(recipe),
       wavelengths_nm_(wavelengths_nm),
       scattering_tolerance_(0.1 * scattering_tolerance),
       fourier_tolerance_(0.1 * fourier_tolerance) {}
 
-const brdf::MuellerGrid& References::at(std::size_t w, int streams) const { return grids_.at({w, streams}); }
+const brdf::MuellerGrid& References::at(std::size_t w, int streams) const {
+    return grids_.at({w, streams});
+}
 
 void References::prepare(const std::vector<std::size_t>& wavelengths, int streams, const JobControl& control) {
     std::vector<std::size_t> missing;
@@ -32,12 +34,18 @@ void References::prepare(const std::vector<std::size_t>& wavelengths, int stream
 }
 
 brdf::MuellerGrid References::solve(std::size_t w, int streams) const {
-    const coating::OpticalProblem optical = coating::optical_problem(recipe_, wavelengths_nm_[w], scattering_tolerance_);
-    return between_nodes(solver_.reflection(optical.problem, {.streams = streams, .fourier_tolerance = fourier_tolerance_}));
+    const coating::OpticalProblem optical =
+        coating::optical_problem(recipe_, wavelengths_nm_[w], scattering_tolerance_);
+    return between_nodes(
+        solver_.reflection(optical.problem, {.streams = streams, .fourier_tolerance = fourier_tolerance_}));
 }
 
-int finer_streams(int streams) { return (3 * streams + 1) / 2; }
-int half_streams(int streams) { return std::max(3, (streams + 1) / 2); }
+int finer_streams(int streams) {
+    return (3 * streams + 1) / 2;
+}
+int half_streams(int streams) {
+    return std::max(3, (streams + 1) / 2);
+}
 
 double error_bound(double difference_from_half, double difference_from_finer) {
     const double q = difference_from_half > 0.0 ? std::min(0.5, difference_from_finer / difference_from_half) : 0.5;
@@ -47,13 +55,14 @@ double error_bound(double difference_from_half, double difference_from_finer) {
 namespace {
 
 // The error bound of `streams`, in units of what is allowed, at the worst wavelength.
-double excess(References& references, const std::vector<std::size_t>& wavelengths, int streams, int finer, double tolerance,
-              const JobControl& control) {
+double excess(References& references, const std::vector<std::size_t>& wavelengths, int streams, int finer,
+              double tolerance, const JobControl& control) {
     for (const int needed : {half_streams(streams), streams, finer}) references.prepare(wavelengths, needed, control);
     double worst = 0.0;
     for (const std::size_t w : wavelengths) {
         const brdf::MuellerGrid &grid = references.at(w, streams), &fine = references.at(w, finer);
-        const double bound = error_bound(largest_difference(references.at(w, half_streams(streams)), grid), largest_difference(grid, fine));
+        const double bound = error_bound(largest_difference(references.at(w, half_streams(streams)), grid),
+                                         largest_difference(grid, fine));
         if (bound > 0.0) worst = std::max(worst, bound / (tolerance * largest_intensity(fine)));
     }
     return worst;
@@ -61,7 +70,8 @@ double excess(References& references, const std::vector<std::size_t>& wavelength
 
 }  // namespace
 
-int choose_streams(References& references, const std::vector<std::size_t>& wavelengths, double tolerance, const JobControl& control) {
+int choose_streams(References& references, const std::vector<std::size_t>& wavelengths, double tolerance,
+                   const JobControl& control) {
     // Climb in steps of one half until the next step changes nothing that matters.
     int streams = fewest_streams, before = 0;
     double now = 0.0, last = 0.0;

@@ -11,11 +11,11 @@
 
 namespace patina::jobs {
 
-// Upper bound of the error of a table of N streams whose BRDF differs from that of half and of 1.5 times the streams by at
-// most these amounts. Where the error falls like N^-p the second difference is 1 - 1.5^-p of it, a third for p = 1, the
-// slowest seen (thin index-matched layers), and the ratio q of the differences shows p: 0.33, 0.19, 0.05 for p = 1, 2, 4. The bound
-// 2 (1 + 4 q) times the second difference exceeds the error for every p, by half as much again for what lies between the
-// judged directions.
+// Upper bound of the error of a table of N streams whose BRDF differs from that of half and of 1.5 times the streams by
+// at most these amounts. Where the error falls like N^-p the second difference is 1 - 1.5^-p of it, a third for p = 1,
+// the slowest seen (thin index-matched layers), and the ratio q of the differences shows p: 0.33, 0.19, 0.05 for p = 1,
+// 2, 4. The bound 2 (1 + 4 q) times the second difference exceeds the error for every p, by half as much again for what
+// lies between the judged directions.
 double error_bound(double difference_from_half, double difference_from_finer);
 
 inline constexpr int fewest_streams = 6, most_streams = 72;
@@ -23,9 +23,10 @@ inline constexpr int fewest_streams = 6, most_streams = 72;
 // Reference solutions at a few wavelengths, each computed once.
 class References {
   public:
-    // `wavelengths_nm` are all of the table's; single scattering and Fourier series are ten times finer than the table's.
-    References(const rt::Solver& solver, const coating::Recipe& recipe, const std::vector<double>& wavelengths_nm, double scattering_tolerance,
-               double fourier_tolerance);
+    // `wavelengths_nm` are all of the table's; single scattering and Fourier series are ten times finer than the
+    // table's.
+    References(const rt::Solver& solver, const coating::Recipe& recipe, const std::vector<double>& wavelengths_nm,
+               double scattering_tolerance, double fourier_tolerance);
 
     // The BRDF between nodes at wavelength w (a position) with exactly that many streams.
     const brdf::MuellerGrid& at(std::size_t w, int streams) const;
@@ -46,8 +47,9 @@ class References {
 int finer_streams(int streams);
 int half_streams(int streams);
 
-// The fewest streams, up to most_streams, whose table is within `tolerance` times the largest f00 of the converged BRDF at the
-// wavelengths given, by error_bound().
-int choose_streams(References& references, const std::vector<std::size_t>& wavelengths, double tolerance, const JobControl& control);
+// The fewest streams, up to most_streams, whose table is within `tolerance` times the largest f00 of the converged BRDF
+// at the wavelengths given, by error_bound().
+int choose_streams(References& references, const std::vector<std::size_t>& wavelengths, double tolerance,
+                   const JobControl& control);
 
 }  // namespace patina::jobs

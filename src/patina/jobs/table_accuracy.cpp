@@ -11,7 +11,8 @@ namespace patina::jobs {
 namespace {
 
 // Interpolation polynomials err most near the ends of the cosine's range, where these angles lie closest in cosine.
-constexpr double zenith_angles_deg[] = {0, 3, 17, 29, 39, 48, 56, 62, 67, 71, 74.5, 78, 81, 83.5, largest_judged_zenith_deg};
+constexpr double zenith_angles_deg[] = {
+    0, 3, 17, 29, 39, 48, 56, 62, 67, 71, 74.5, 78, 81, 83.5, largest_judged_zenith_deg};
 
 }  // namespace
 

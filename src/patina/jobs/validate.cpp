@@ -25,7 +25,8 @@ std::string reason_to_skip(const Benchmark& benchmark, const rt::Solver& solver)
 }
 
 ValidatedCase run(const Benchmark& benchmark, const rt::Solver* solver) {
-    ValidatedCase result{benchmark.name, benchmark.source, benchmark.quantity, benchmark.tolerance, "", benchmark.components};
+    ValidatedCase result{benchmark.name,      benchmark.source, benchmark.quantity, benchmark.tolerance, "",
+                         benchmark.components};
     validation::Comparison comparison;
     if (solver) {
         result.solver = solver->name();
@@ -42,10 +43,13 @@ ValidatedCase run(const Benchmark& benchmark, const rt::Solver* solver) {
 
 }  // namespace
 
-bool ValidationReport::passed() const { return failures() == 0; }
+bool ValidationReport::passed() const {
+    return failures() == 0;
+}
 
 int ValidationReport::failures() const {
-    return static_cast<int>(std::count_if(cases.begin(), cases.end(), [](const ValidatedCase& one) { return !one.passed(); }));
+    return static_cast<int>(
+        std::count_if(cases.begin(), cases.end(), [](const ValidatedCase& one) { return !one.passed(); }));
 }
 
 ValidationReport validate(const ValidateRequest& request, const JobControl& control) {
@@ -69,7 +73,8 @@ ValidationReport validate(const ValidateRequest& request, const JobControl& cont
         }
     }
     for (const validation::PolarizationRow& row : validation::cost_of_ignoring_polarization(*solvers.front()))
-        report.cost_of_ignoring_polarization.push_back({row.zenith_deg, row.phi_deg, row.published, row.vector, row.scalar});
+        report.cost_of_ignoring_polarization.push_back(
+            {row.zenith_deg, row.phi_deg, row.published, row.vector, row.scalar});
     return report;
 }
 

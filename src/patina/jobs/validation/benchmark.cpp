@@ -17,8 +17,8 @@ void Comparison::add(int component, double computed, double published, double al
 
 std::vector<Benchmark> benchmarks() {
     std::vector<Benchmark> all;
-    for (auto part : {siewert_benchmarks, rayleigh_benchmarks, paint_slab_benchmarks, scalar_benchmarks, interface_benchmarks,
-                      single_scattering_benchmarks})
+    for (auto part : {siewert_benchmarks, rayleigh_benchmarks, paint_slab_benchmarks, scalar_benchmarks,
+                      interface_benchmarks, single_scattering_benchmarks})
         for (Benchmark& benchmark : part()) all.push_back(std::move(benchmark));
     return all;
 }
@@ -54,7 +54,8 @@ void compare_field(const rt::Solver& solver, const rt::Problem& problem, double 
     const rt::Field field = solver.field(problem, request, options);
 
     for (const RadianceValue& value : values) {
-        const std::size_t d = place(depths, value.optical_depth), o = place(mu_o, value.mu_o), p = place(phi_deg, value.phi_deg);
+        const std::size_t d = place(depths, value.optical_depth), o = place(mu_o, value.mu_o),
+                          p = place(phi_deg, value.phi_deg);
         const double computed = (value.upward ? field.upward : field.downward)[d][o][p][value.component];
         const auto& errors = value.upward ? field.upward_error : field.downward_error;
         const double statistical = errors.empty() ? 0.0 : 5.0 * factor * errors[d][o][p][value.component];

@@ -29,8 +29,8 @@ class Comparison {
 
 struct Benchmark {
     std::string name, source;
-    std::string quantity;           // what is compared
-    std::string tolerance;          // how far it may be off, and why
+    std::string quantity;               // what is compared
+    std::string tolerance;              // how far it may be off, and why
     std::vector<rt::Problem> problems;  // a solver must support all; empty: no solver takes part
     // Compares; the solver is null when none takes part.
     std::function<void(const rt::Solver*, Comparison&)> run;
@@ -56,8 +56,8 @@ struct RadianceValue {
     double published, allowed;
 };
 
-// Adds the comparison of `factor` times the solver's field for unpolarized light at cosine mu_i. A statistical solver is
-// allowed 5 of its standard errors more (one of 10^6 values is that far off).
+// Adds the comparison of `factor` times the solver's field for unpolarized light at cosine mu_i. A statistical solver
+// is allowed 5 of its standard errors more (one of 10^6 values is that far off).
 void compare_field(const rt::Solver& solver, const rt::Problem& problem, double mu_i, double factor,
                    const rt::SolveOptions& options, const std::vector<RadianceValue>& values, Comparison& comparison);
 

@@ -1,8 +1,8 @@
 #pragma once
-// Water haze L (m = 1.33, wavelength 0.7 um) of de Haan, Bosma & Hovenier (1987), A&A 183, 371: light scattered once by a
-// layer of optical thickness 0.2 and single-scattering albedo 1, unpolarized beam of flux pi at cosine 0.6. Digits as in
-// the tests of the radiative transfer code SORD/IPOL (S. Korkin, NASA GSFC). Two coefficients there (alpha3 of l = 53,
-// beta1 and beta2 of l = 90) are misprinted by 0.3 and 0.09, where their neighbours are below 5e-4: mended here.
+// Water haze L (m = 1.33, wavelength 0.7 um) of de Haan, Bosma & Hovenier (1987), A&A 183, 371: light scattered once by
+// a layer of optical thickness 0.2 and single-scattering albedo 1, unpolarized beam of flux pi at cosine 0.6. Digits as
+// in the tests of the radiative transfer code SORD/IPOL (S. Korkin, NASA GSFC). Two coefficients there (alpha3 of l =
+// 53, beta1 and beta2 of l = 90) are misprinted by 0.3 and 0.09, where their neighbours are below 5e-4: mended here.
 
 namespace patina::haze_l {
 

@@ -7,9 +7,9 @@ namespace patina::mie_tables {
 
 inline constexpr double none = std::numeric_limits<double>::quiet_NaN();  // not printed
 
-// Wiscombe (1979), NCAR/TN-140+STR, test cases of MIEV0 (index 0: perfect conductor; its asymmetry at x = 0.099 is printed from a
-// power series, -0.397357, the exact one in 40-digit arithmetic stands here), and Du (2004), Appl. Opt. 43, 1951, table 1.
-// Efficiencies of extinction and scattering and <cos theta>, each with one unit of its last digit.
+// Wiscombe (1979), NCAR/TN-140+STR, test cases of MIEV0 (index 0: perfect conductor; its asymmetry at x = 0.099 is
+// printed from a power series, -0.397357, the exact one in 40-digit arithmetic stands here), and Du (2004), Appl. Opt.
+// 43, 1951, table 1. Efficiencies of extinction and scattering and <cos theta>, each with one unit of its last digit.
 struct Efficiencies {
     double index[2];
     double x;
@@ -58,16 +58,13 @@ inline constexpr Efficiencies efficiencies[] = {
 
 // Wiscombe (1979), x = 1, m = 1.5 + i: theta in degrees, Re S1, Im S1, Re S2, Im S2 for a time factor exp(+iwt).
 inline constexpr double amplitudes[][5] = {
-    {0, 0.584080, 0.190515, 0.584080, 0.190515},
-    {30, 0.565702, 0.187200, 0.500161, 0.145611},
-    {60, 0.517525, 0.178443, 0.287964, 0.041054},
-    {90, 0.456340, 0.167167, 0.0362285, -0.0618265},
-    {120, 0.400212, 0.156643, -0.174875, -0.122959},
-    {150, 0.362157, 0.149391, -0.305682, -0.143846},
+    {0, 0.584080, 0.190515, 0.584080, 0.190515},     {30, 0.565702, 0.187200, 0.500161, 0.145611},
+    {60, 0.517525, 0.178443, 0.287964, 0.041054},    {90, 0.456340, 0.167167, 0.0362285, -0.0618265},
+    {120, 0.400212, 0.156643, -0.174875, -0.122959}, {150, 0.362157, 0.149391, -0.305682, -0.143846},
 };
 
-// Bohren & Huffman (1983), appendix A, m = 1.55, radius 0.525 um, wavelength 0.6328 um: theta in degrees, S11/S11(0), -S12/S11, S33/S11,
-// S34/S11.
+// Bohren & Huffman (1983), appendix A, m = 1.55, radius 0.525 um, wavelength 0.6328 um: theta in degrees, S11/S11(0),
+// -S12/S11, S33/S11, S34/S11.
 inline constexpr double matrix[][5] = {
     {0.0, 1, 0, 1, 0},
     {9.0, 0.78539, -0.00459811, 0.9994, 0.0343261},

@@ -28,8 +28,8 @@ material = {{ n = 2.75 }}
 volume_fraction = {}
 size = {{ distribution = "lognormal", median_radius_um = 0.125, sigma_g = 1.3 }}
 )",
-                                           interface ? "[interface]\ntype = \"smooth\"\n" : "", mean_volume_um3 / (volume_fraction * 0.222813),
-                                           volume_fraction);
+                                           interface ? "[interface]\ntype = \"smooth\"\n" : "",
+                                           mean_volume_um3 / (volume_fraction * 0.222813), volume_fraction);
     return coating::optical_problem(coating::parse_recipe(recipe, "paint slab", "."), 550.0, 1e-6).problem;
 }
 
@@ -37,9 +37,11 @@ void run_slab(const rt::Solver* solver, bool interface, std::span<const paint_sl
     std::vector<RadianceValue> values;
     for (const paint_slab::Row& row : rows)
         for (int s = 0; s < 4; ++s)
-            values.push_back({0.0, true, std::cos(radians(row.theta_o_deg)), row.phi_deg, s, row.stokes[s], 3.0 * row.sigma[s] + 1e-5 * row.stokes[0]});
+            values.push_back({0.0, true, std::cos(radians(row.theta_o_deg)), row.phi_deg, s, row.stokes[s],
+                              3.0 * row.sigma[s] + 1e-5 * row.stokes[0]});
     const double mu_i = std::cos(radians(45.0));
-    compare_field(*solver, paint_slab(interface), mu_i, 1.0 / (pi * mu_i), {.streams = 20, .samples = 300'000}, values, comparison);
+    compare_field(*solver, paint_slab(interface), mu_i, 1.0 / (pi * mu_i), {.streams = 20, .samples = 300'000}, values,
+                  comparison);
 }
 
 }  // namespace
@@ -47,11 +49,13 @@ void run_slab(const rt::Solver* solver, bool interface, std::span<const paint_sl
 std::vector<Benchmark> paint_slab_benchmarks() {
     std::vector<Benchmark> result;
     for (const bool interface : {false, true}) {
-        Benchmark benchmark{interface ? "Paint slab under an interface" : "Paint slab, index matched",
-                            "polarized Monte Carlo from electric-field amplitudes, made for this project (docs/theory.md)",
-                            "Stokes BRDF of TiO2-like paint at 45 deg incidence, 25 directions, from a composition recipe",
-                            "3 of its standard errors and 1e-5 of I, what its 512 size classes leave",
-                            {paint_slab(interface)}, {}};
+        Benchmark benchmark{
+            interface ? "Paint slab under an interface" : "Paint slab, index matched",
+            "polarized Monte Carlo from electric-field amplitudes, made for this project (docs/theory.md)",
+            "Stokes BRDF of TiO2-like paint at 45 deg incidence, 25 directions, from a composition recipe",
+            "3 of its standard errors and 1e-5 of I, what its 512 size classes leave",
+            {paint_slab(interface)},
+            {}};
         benchmark.run = [interface](const rt::Solver* solver, Comparison& comparison) {
             if (interface)
                 run_slab(solver, true, paint_slab::case_b, comparison);

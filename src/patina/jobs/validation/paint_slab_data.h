@@ -1,7 +1,8 @@
 #pragma once
-// An independent polarized Monte Carlo of a pigment slab (electric-field amplitudes, explicit frames), made for this project:
-// TiO2-like spheres m = 2.75, log-normal by number (median 0.125 um, sigma_g 1.3), host 1.495, 550 nm, tau = 1, black base,
-// unpolarized light at 45 deg. Value = exit Stokes radiance / irradiance on the slab, 1/sr, signs of docs/conventions.md.
+// An independent polarized Monte Carlo of a pigment slab (electric-field amplitudes, explicit frames), made for this
+// project: TiO2-like spheres m = 2.75, log-normal by number (median 0.125 um, sigma_g 1.3), host 1.495, 550 nm, tau =
+// 1, black base, unpolarized light at 45 deg. Value = exit Stokes radiance / irradiance on the slab, 1/sr, signs of
+// docs/conventions.md.
 
 namespace patina::paint_slab {
 

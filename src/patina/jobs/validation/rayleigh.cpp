@@ -31,12 +31,15 @@ void run_layer(const rt::Solver* solver, double optical_thickness, double reflec
     for (const double mu_i : {0.2, 0.6, 1.0}) {
         std::vector<RadianceValue> values;
         for (const auto& row : natraj2009::radiances) {
-            if (row.optical_thickness != optical_thickness || row.reflectance != reflectance || row.mu_i != mu_i) continue;
+            if (row.optical_thickness != optical_thickness || row.reflectance != reflectance || row.mu_i != mu_i)
+                continue;
             const double published[3] = {row.i, -row.q, -row.u};
             for (int s = 0; s < 3; ++s)
-                values.push_back({row.upward ? 0.0 : optical_thickness, row.upward, row.mu_o, row.phi_deg, s, published[s], 1e-6});
+                values.push_back(
+                    {row.upward ? 0.0 : optical_thickness, row.upward, row.mu_o, row.phi_deg, s, published[s], 1e-6});
         }
-        compare_field(*solver, layer(optical_thickness, reflectance), mu_i, 1.0, {.streams = 24, .samples = 200'000}, values, comparison);
+        compare_field(*solver, layer(optical_thickness, reflectance), mu_i, 1.0, {.streams = 24, .samples = 200'000},
+                      values, comparison);
     }
 }
 
@@ -49,9 +52,11 @@ std::vector<Benchmark> rayleigh_benchmarks() {
                             "Natraj, Li & Yung (2009), Astrophys. J. 691, 1909 (corrected Coulson-Dave-Sekera tables)",
                             "Stokes radiances at top and bottom, optical thickness 0.5 and 1, conservative",
                             "1e-6, though printed to 1e-8: grazing directions at 24 streams",
-                            {layer(0.5, reflectance)}, {}};
+                            {layer(0.5, reflectance)},
+                            {}};
         benchmark.run = [reflectance](const rt::Solver* solver, Comparison& comparison) {
-            for (const double optical_thickness : {0.5, 1.0}) run_layer(solver, optical_thickness, reflectance, comparison);
+            for (const double optical_thickness : {0.5, 1.0})
+                run_layer(solver, optical_thickness, reflectance, comparison);
         };
         benchmark.for_statistical_solvers = true;
         result.push_back(std::move(benchmark));
