@@ -140,7 +140,7 @@ LayerOperators<double> EigenmodeMethod::solve(const TransferSystem<double>& syst
     // displace the rates a little to both sides and extrapolate (error of the fourth order, 1e-12).
     if (!system.symmetric()) {
         constexpr double step = 1e-3;
-        for (const auto [shift, weight] :
+        for (const auto& [shift, weight] :
              {std::pair{step, 2.0 / 3}, {-step, 2.0 / 3}, {2 * step, -1.0 / 6}, {-2 * step, -1.0 / 6}})
             extend(Blocks(system, shift, -0.5 * shift), modes, tau, weight, sums);
     }
