@@ -1,7 +1,7 @@
 // CPU time of the solvers on Siewert (2000), problem IIA: all incidences, four incident Stokes vectors, all Fourier
 // orders. VLIDORT 2.8.3 needs 0.034 s (16 streams) and 0.25 s (32 streams) for one incidence and one column.
 
-#include "../tests/verification/rt_siewert2000_data.h"
+#include "patina/jobs/validation/siewert2000_data.h"
 #include <benchmark/benchmark.h>
 
 #include "patina/core/parallel.h"
