@@ -29,7 +29,8 @@ TEST_F(Validate, EveryBenchmarkPassesAndIsWrittenDown) {
         EXPECT_FALSE(one["source"].get<std::string>().empty());
         siewert += one["case"] == "Siewert IIA";
         if (one["case"] == "Siewert IIA") {
-            EXPECT_EQ(one["values"], 8 * 22 * 7);
+            // Eight tables of 22 cosines at seven depths; the Monte Carlo cannot see the two horizontal rows.
+            EXPECT_EQ(one["values"], 8 * (one["solver"] == "montecarlo" ? 20 : 22) * 7);
         }
     }
     EXPECT_GE(siewert, 2);
