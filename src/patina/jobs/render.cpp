@@ -13,6 +13,8 @@
 #include "patina/io/png_file.h"
 #include "patina/io/stokes_exr.h"
 #include "patina/io/table_hdf5.h"
+#include "patina/io/table_merl.h"
+#include "patina/io/table_pbsdf.h"
 #include "patina/jobs/solve.h"
 #include "patina/version.h"
 
@@ -64,11 +66,19 @@ class Cache {
 
 render::SceneResources scene_resources(std::vector<std::string>& warnings, const JobControl& control) {
     const auto tables = std::make_shared<Cache<brdf::MuellerTable>>();
+    const auto half_angle_tables = std::make_shared<Cache<brdf::HalfAngleTable>>();
+    const auto merl_tables = std::make_shared<Cache<brdf::MerlTable>>();
     const auto meshes = std::make_shared<Cache<TriangleMesh>>();
     const auto bitmaps = std::make_shared<Cache<Bitmap>>();
     render::SceneResources resources;
     resources.load_brdf_table = [tables, control](const std::string& path) {
         return tables->get(path, [&] { return load_table(path, control); });
+    };
+    resources.load_half_angle_table = [half_angle_tables](const std::string& path) {
+        return half_angle_tables->get(path, [&] { return std::make_shared<const brdf::HalfAngleTable>(io::read_table_pbsdf(path)); });
+    };
+    resources.load_merl_table = [merl_tables](const std::string& path) {
+        return merl_tables->get(path, [&] { return std::make_shared<const brdf::MerlTable>(io::read_table_merl(path)); });
     };
     resources.load_mesh = [meshes, &warnings](const std::string& path, const std::string& kind) {
         return meshes->get(path, [&] {

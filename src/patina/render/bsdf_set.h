@@ -2,12 +2,21 @@
 // The closed set of surface models and their dispatch. Adding one: its header and source in bsdfs/, and one line here.
 
 #include "patina/render/bsdf.h"
+#include "patina/render/bsdfs/blend.h"
 #include "patina/render/bsdfs/conductor.h"
 #include "patina/render/bsdfs/dielectric.h"
 #include "patina/render/bsdfs/diffuse.h"
+#include "patina/render/bsdfs/lafortune.h"
+#include "patina/render/bsdfs/mask.h"
+#include "patina/render/bsdfs/measured.h"
+#include "patina/render/bsdfs/oren_nayar.h"
 #include "patina/render/bsdfs/paint.h"
+#include "patina/render/bsdfs/phong.h"
+#include "patina/render/bsdfs/plastic.h"
 #include "patina/render/bsdfs/polarizer.h"
 #include "patina/render/bsdfs/rough_conductor.h"
+#include "patina/render/bsdfs/rough_dielectric.h"
+#include "patina/render/bsdfs/thin_dielectric.h"
 #include "patina/render/bsdfs/two_sided.h"
 
 namespace patina::render {
@@ -16,8 +25,13 @@ template <BsdfModel... Models>
 using BsdfVariant = std::variant<Models...>;
 
 struct Bsdf {
-    using Model = BsdfVariant<Diffuse, Dielectric, Conductor, RoughConductor, Paint, LinearPolarizer, Retarder,
-                              CircularPolarizer, TwoSided>;
+    using Model = BsdfVariant<Diffuse, OrenNayar, Phong, Lafortune,            // empirical
+                              Dielectric, ThinDielectric, RoughDielectric,     // interfaces
+                              Conductor, RoughConductor,                       // metals
+                              Plastic, RoughPlastic, PolarizedPlastic, Paint,  // coatings
+                              MeasuredPolarized, Merl,                         // tables
+                              LinearPolarizer, Retarder, CircularPolarizer,    // polarization optics
+                              TwoSided, Blend, Mask, Null>;
     Model model;
 };
 

@@ -1,5 +1,9 @@
 #include "patina/render/microfacet.h"
 
+#include <fmt/format.h>
+
+#include "patina/core/error.h"
+
 namespace patina::render {
 
 namespace {
@@ -37,6 +41,33 @@ Vec3 Microfacets::sample_beckmann(const Vec3& w, const Vec2& u) const {
     const float across = visible_slope(1, 0, u.y());
     const float slope_x = cos_phi * along - sin_phi * across, slope_y = sin_phi * along + cos_phi * across;
     return Vec3(-slope_x * alpha_x, -slope_y * alpha_y, 1).normalized();
+}
+
+std::vector<ParameterDescriptor> microfacet_parameters() {
+    return {{"distribution", "string", "", "beckmann", "ggx, beckmann", "distribution of facet normals"},
+            {"alpha", "number", "", "0.1", "0.0001 .. 2", "roughness"},
+            {"alpha_u", "number", "", "alpha", "0.0001 .. 2", "roughness along the tangent"},
+            {"alpha_v", "number", "", "alpha", "0.0001 .. 2", "roughness across the tangent"},
+            {"sample_visible", "boolean", "", "true", "", "accepted: visible normals are always sampled"}};
+}
+
+Microfacets microfacets_of(const Properties& node) {
+    Microfacets facets;
+    const std::string kind = node.string("distribution", "beckmann");
+    if (kind != "ggx" && kind != "beckmann")
+        throw input_error(node.location_of("distribution"), fmt::format("unknown microfacet distribution \"{}\"", kind),
+                          "", did_you_mean(kind, {"ggx", "beckmann"}));
+    facets.kind = kind == "ggx" ? MicrofacetKind::ggx : MicrofacetKind::beckmann;
+    const double alpha = node.number("alpha", 0.1);
+    facets.alpha_x = static_cast<float>(node.number("alpha_u", alpha));
+    facets.alpha_y = static_cast<float>(node.number("alpha_v", alpha));
+    // Below 1e-4 a facet turns light by less than a float can tell from the mirror direction.
+    for (const auto& [name, value] : {std::pair{"alpha_u", facets.alpha_x}, {"alpha_v", facets.alpha_y}})
+        if (!(value >= 1e-4f && value <= 2.0f))
+            throw input_error(node.location_of(node.has(name) ? name : "alpha"), "roughness out of range",
+                              fmt::format("it is {}", value), "keep it between 0.0001 and 2, or use the smooth model");
+    node.boolean("sample_visible", true);
+    return facets;
 }
 
 }  // namespace patina::render

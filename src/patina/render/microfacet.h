@@ -5,6 +5,10 @@
 // for refraction; Heitz (2014), Understanding the masking-shadowing function; Heitz (2018), Sampling the GGX
 // distribution of visible normals. All directions are local, z is the macroscopic normal.
 
+#include <vector>
+
+#include "patina/core/properties.h"
+#include "patina/render/render.h"
 #include "patina/render/vec.h"
 
 namespace patina::render {
@@ -61,5 +65,10 @@ struct Microfacets {
     }
     Vec3 sample_beckmann(const Vec3& w, const Vec2& u) const;
 };
+
+// The microfacets of a plugin's `distribution` and `alpha` (or `alpha_u` and `alpha_v`), with Mitsuba's defaults; and
+// what they are called in its manual. Throws Error(input) for roughness outside 0.0001 .. 2.
+Microfacets microfacets_of(const Properties& node);
+std::vector<ParameterDescriptor> microfacet_parameters();
 
 }  // namespace patina::render

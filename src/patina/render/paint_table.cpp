@@ -1,6 +1,10 @@
 #include "patina/render/paint_table.h"
 
 #include <bit>
+#include <cstdlib>
+#include <new>
+
+#include <sys/mman.h>
 
 #include "patina/core/constants.h"
 #include "patina/core/parallel.h"
@@ -15,14 +19,21 @@ std::uint16_t to_half(float value) {
     const auto half = static_cast<_Float16>(value);
     return std::bit_cast<std::uint16_t>(half);
 }
-Float4 load_halves(const std::uint16_t* p) {
-#if defined(__F16C__)
-    return (Float4)_mm_cvtph_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p)));
+// A column of a Mueller matrix for four wavelengths: 16 halves.
+StokesPacket load_halves(const std::uint16_t* p) {
+#if defined(__AVX512F__)
+    return (StokesPacket)_mm512_cvtph_ps(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p)));
 #else
-    Float4 result;
-    for (int i = 0; i < 4; ++i) result[i] = static_cast<float>(std::bit_cast<_Float16>(p[i]));
+    StokesPacket result;
+    for (int i = 0; i < 16; ++i) result[i] = static_cast<float>(std::bit_cast<_Float16>(p[i]));
     return result;
 #endif
+}
+
+// The four lanes turned by `steps` to the left: lane k takes what lane k + steps held.
+Float4 turned(Float4 x, int steps) {
+    static constexpr Mask4 order[4] = {{0, 1, 2, 3}, {1, 2, 3, 0}, {2, 3, 0, 1}, {3, 0, 1, 2}};
+    return __builtin_shuffle(x, order[steps]);
 }
 
 // acos for x in [-1, 1] to 2e-8 plus rounding (Abramowitz & Stegun 1964, eq. 4.4.46).
@@ -51,40 +62,69 @@ Vec2 unit_azimuth(float x, float y, const Vec2& fallback) {
     return length2 > 1e-14f ? Vec2(Vec2(x, y) / std::sqrt(length2)) : fallback;
 }
 
+// Whether they lie as Wavelengths::sample puts them, but for rounding.
+bool equally_spaced(const Wavelengths& w) {
+    constexpr float quarter = 0.25f * wavelength_range_nm;
+    float expected = w.nm[0];
+    for (int k = 1; k < wavelengths_per_path; ++k) {
+        expected += expected + quarter > wavelength_max_nm - 1e-3f ? quarter - wavelength_range_nm : quarter;
+        if (std::abs(w.nm[k] - expected) > 2e-3f) return false;
+    }
+    return true;
+}
+
 std::vector<double> angle_cosines(int count) {
     std::vector<double> mu(count);
     for (int i = 0; i < count; ++i) mu[i] = std::max(0.0, std::cos(0.5 * pi * i / (count - 1)));
     return mu;
 }
 
-float wavelength_position(float nm, int count) {
-    return (nm - wavelength_min_nm) * (static_cast<float>(count - 1) / wavelength_range_nm);
-}
-
-double node_wavelength_nm(int index, int count, const brdf::MuellerTable& table) {
-    if (count == 1) return table.wavelengths_nm.front();
-    return wavelength_min_nm + wavelength_range_nm * index / (count - 1);
-}
-
 }  // namespace
 
+void* allocate_in_large_pages(std::size_t bytes) {
+    constexpr std::size_t page = std::size_t{2} << 20;
+    const std::size_t whole = (bytes + page - 1) / page * page;
+    void* memory = std::aligned_alloc(page, whole);
+    if (memory == nullptr) throw std::bad_alloc();
+#if defined(MADV_HUGEPAGE)
+    madvise(memory, whole, MADV_HUGEPAGE);  // a wish; it may be refused
+#endif
+    return memory;
+}
+
 PaintTable::PaintTable(const brdf::MuellerTable& table, const Size& size) : size_(size) {
-    if (table.wavelengths_nm.size() == 1) size_.wavelengths = 1;
-    block_ = 16 * static_cast<std::size_t>(size_.wavelengths);
+    if (table.wavelengths_nm.size() == 1) {
+        only_wavelength_nm_ = table.wavelengths_nm.front();
+        size_.intervals = 0;
+    }
+    nodes_ = size_.intervals + 1;
+    specular_wavelengths_ = 4 * size_.intervals + 1;
+    block_ = 64 * static_cast<std::size_t>(nodes_);
     tabulate_body(table);
     tabulate_specular(table);
     tabulate_sampling();
 }
 
+double PaintTable::wavelength_nm(int index) const {
+    if (size_.intervals == 0) return only_wavelength_nm_;
+    return wavelength_min_nm + wavelength_range_nm * index / (4 * size_.intervals);
+}
+
+PaintTable::WavelengthPlace PaintTable::wavelength_place(float nm) const {
+    const float position = std::clamp((nm - wavelength_min_nm) * (4 / wavelength_range_nm), 0.0f, 3.9999998f);
+    const int quarter = static_cast<int>(position);
+    const Interval in_quarter((position - static_cast<float>(quarter)) * static_cast<float>(size_.intervals), nodes_);
+    return {quarter, in_quarter.lower, in_quarter.weight};
+}
+
 void PaintTable::tabulate_body(const brdf::MuellerTable& table) {
-    body_.resize(node(size_.angles, 0, 0));
+    body_.assign(node(size_.angles, 0, 0), 0);
     const std::vector<double> mu = angle_cosines(size_.angles);
     std::vector<double> phi(size_.azimuths);
     for (int p = 0; p < size_.azimuths; ++p) phi[p] = pi * p / (size_.azimuths - 1);
-    parallel_for(0, size_.wavelengths, [&](std::ptrdiff_t w) {
+    parallel_for(0, specular_wavelengths_, [&](std::ptrdiff_t w) {
         const int wavelength = static_cast<int>(w);
-        const brdf::MuellerGrid grid =
-            table.evaluate_grid(node_wavelength_nm(wavelength, size_.wavelengths, table), mu, mu, phi);
+        const brdf::MuellerGrid grid = table.evaluate_grid(wavelength_nm(wavelength), mu, mu, phi);
         for (int o = 0; o < size_.angles; ++o)
             for (int i = 0; i < size_.angles; ++i)
                 for (int p = 0; p < size_.azimuths; ++p) {
@@ -94,22 +134,27 @@ void PaintTable::tabulate_body(const brdf::MuellerTable& table) {
                     // An interpolated table may fall short of zero by little where it is steep.
                     const double keep = m(0, 0) > 0 ? 1.0 : 0.0;
                     std::uint16_t* block = &body_[node(o, i, p)];
-                    for (int column = 0; column < 4; ++column)
-                        for (int row = 0; row < 4; ++row)
-                            block[(column * size_.wavelengths + wavelength) * 4 + row] =
-                                to_half(static_cast<float>(keep * m(row, column)));
+                    for (int quarter = 0; quarter < 4; ++quarter) {
+                        // The end of a quarter is the beginning of the next.
+                        const int place = size_.intervals == 0 ? 0 : wavelength - quarter * size_.intervals;
+                        if (place < 0 || place >= nodes_) continue;
+                        for (int column = 0; column < 4; ++column)
+                            for (int row = 0; row < 4; ++row)
+                                block[((place * 4 + column) * 4 + row) * 4 + quarter] =
+                                    to_half(static_cast<float>(keep * m(row, column)));
+                    }
                 }
     });
 }
 
 void PaintTable::tabulate_specular(const brdf::MuellerTable& table) {
-    specular_.resize(static_cast<std::size_t>(specular_nodes) * size_.wavelengths);
+    specular_.resize(static_cast<std::size_t>(specular_nodes) * specular_wavelengths_);
     for (int i = 0; i < specular_nodes; ++i) {
         const double mu = std::max(0.0, std::cos(0.5 * pi * i / (specular_nodes - 1)));
-        for (int w = 0; w < size_.wavelengths; ++w) {
+        for (int w = 0; w < specular_wavelengths_; ++w) {
             // From x in the plane of incidence to x across it: Q changes its sign, and U does a second time.
-            const optics::Mueller m = table.specular(node_wavelength_nm(w, size_.wavelengths, table), mu);
-            specular_[static_cast<std::size_t>(i) * size_.wavelengths + w] = {
+            const optics::Mueller m = table.specular(wavelength_nm(w), mu);
+            specular_[static_cast<std::size_t>(i) * specular_wavelengths_ + w] = {
                 static_cast<float>(m(0, 0)), static_cast<float>(-m(0, 1)), static_cast<float>(m(2, 2)),
                 static_cast<float>(m(2, 3))};
         }
@@ -183,46 +228,49 @@ PaintTable::Place PaintTable::place(const Vec3& outgoing, const Vec3& incident) 
     return at;
 }
 
+template <int count>
+void PaintTable::interpolate(const Place& at, const WavelengthPlace& wavelength, StokesPacket* columns) const {
+    const Interval o(at.theta_o, size_.angles), i(at.theta_i, size_.angles), p(at.phi, size_.azimuths);
+    const int next = nodes_ > 1 ? 64 : 0;
+    StokesPacket sums[count]{};
+    for (int corner = 0; corner < 8; ++corner) {
+        const int co = corner & 1, ci = (corner >> 1) & 1, cp = corner >> 2;
+        const float weight =
+            (co ? o.weight : 1 - o.weight) * (ci ? i.weight : 1 - i.weight) * (cp ? p.weight : 1 - p.weight);
+        const float high = weight * wavelength.weight, low = weight - high;
+        const std::uint16_t* place = &body_[node(o.lower + co, i.lower + ci, p.lower + cp)] + 64 * wavelength.lower;
+        for (int column = 0; column < count; ++column)
+            sums[column] += low * load_halves(place + 16 * column) + high * load_halves(place + next + 16 * column);
+    }
+    for (int column = 0; column < count; ++column) columns[column] = sums[column];
+}
+
 void PaintTable::evaluate(const Wavelengths& w, const Vec3& outgoing, const Vec3& incident, bool first_column_only,
                           ScatteringMatrix& f) const {
     const Place at = place(outgoing, incident);
-    const Interval o(at.theta_o, size_.angles), i(at.theta_i, size_.angles), p(at.phi, size_.azimuths);
-
-    // The eight corners, and for each wavelength its two nodes.
-    const std::uint16_t* corner[8];
-    float corner_weight[8];
-    for (int c = 0; c < 8; ++c) {
-        const int co = c & 1, ci = (c >> 1) & 1, cp = c >> 2;
-        corner[c] = &body_[node(o.lower + co, i.lower + ci, p.lower + cp)];
-        corner_weight[c] =
-            (co ? o.weight : 1 - o.weight) * (ci ? i.weight : 1 - i.weight) * (cp ? p.weight : 1 - p.weight);
-    }
-    int lower[wavelengths_per_path], step = size_.wavelengths > 1 ? 4 : 0;
-    float fraction[wavelengths_per_path];
-    for (int k = 0; k < wavelengths_per_path; ++k) {
-        const Interval interval(wavelength_position(w.nm[k], size_.wavelengths), size_.wavelengths);
-        lower[k] = 4 * interval.lower;
-        fraction[k] = interval.weight;
-    }
-
-    // Sum up column by column: four Stokes rows at once, then turned to four wavelengths at once.
+    const int count = first_column_only ? 1 : 4;
+    StokesPacket columns[4];
     f.form = ScatteringMatrix::Form::general;
-    for (int column = 0; column < (first_column_only ? 1 : 4); ++column) {
-        Float4 low[wavelengths_per_path]{}, high[wavelengths_per_path]{};
-        for (int c = 0; c < 8; ++c) {
-            const std::uint16_t* block = corner[c] + column * size_.wavelengths * 4;
-            for (int k = 0; k < wavelengths_per_path; ++k) {
-                low[k] += corner_weight[c] * load_halves(block + lower[k]);
-                high[k] += corner_weight[c] * load_halves(block + lower[k] + step);
-            }
-        }
-        for (int k = 0; k < wavelengths_per_path; ++k) low[k] += (high[k] - low[k]) * fraction[k];
-        for (int row = 0; row < 4; ++row) {
-            // Mirroring the azimuth changes the sign of what couples (I, Q) with (U, V).
-            const float sign = at.mirrored && (row < 2) != (column < 2) ? -1.0f : 1.0f;
-            f.m[4 * column + row] = sign * Float4{low[0][row], low[1][row], low[2][row], low[3][row]};
+    if (equally_spaced(w)) {
+        const WavelengthPlace hero = wavelength_place(w.nm[0]);
+        first_column_only ? interpolate<1>(at, hero, columns) : interpolate<4>(at, hero, columns);
+        for (int column = 0; column < count; ++column)
+            for (int row = 0; row < 4; ++row)
+                f.m[4 * column + row] = turned(stokes_row(columns[column], row), hero.quarter);
+    } else {
+        for (int k = 0; k < wavelengths_per_path; ++k) {
+            const WavelengthPlace single = wavelength_place(w.nm[k]);
+            interpolate<4>(at, single, columns);
+            for (int column = 0; column < count; ++column)
+                for (int row = 0; row < 4; ++row)
+                    f.m[4 * column + row][k] = stokes_row(columns[column], row)[single.quarter];
         }
     }
+    // Mirroring the azimuth changes the sign of what couples (I, Q) with (U, V).
+    if (at.mirrored)
+        for (int column = 0; column < count; ++column)
+            for (int row = column < 2 ? 2 : 0; row < (column < 2 ? 4 : 2); ++row)
+                f.m[4 * column + row] = -f.m[4 * column + row];
 
     // x = e_theta cos(phi/2) - e_phi sin(phi/2) for both rays.
     const auto axis = [&](const Vec3& k, const Vec2& azimuth) {
@@ -238,10 +286,11 @@ std::array<Float4, 4> PaintTable::specular(const Wavelengths& w, float cos_o) co
     const Interval theta(fast_acos(cos_o) * (2 * inv_pi_f * (specular_nodes - 1)), specular_nodes);
     std::array<Float4, 4> result;
     for (int k = 0; k < wavelengths_per_path; ++k) {
-        const Interval at(wavelength_position(w.nm[k], size_.wavelengths), size_.wavelengths);
-        const int next = size_.wavelengths > 1 ? 1 : 0;
-        const auto* row0 = &specular_[static_cast<std::size_t>(theta.lower) * size_.wavelengths + at.lower];
-        const auto* row1 = row0 + size_.wavelengths;
+        const WavelengthPlace at = wavelength_place(w.nm[k]);
+        const int next = nodes_ > 1 ? 1 : 0;
+        const auto* row0 = &specular_[static_cast<std::size_t>(theta.lower) * specular_wavelengths_ +
+                                      at.quarter * size_.intervals + at.lower];
+        const auto* row1 = row0 + specular_wavelengths_;
         for (int e = 0; e < 4; ++e)
             result[e][k] = (1 - theta.weight) * ((1 - at.weight) * row0[0][e] + at.weight * row0[next][e]) +
                            theta.weight * ((1 - at.weight) * row1[0][e] + at.weight * row1[next][e]);

@@ -6,9 +6,14 @@
 // Frames: the x axes are e_theta turned about the ray by -phi/2, that is the direction half way between both azimuths,
 // carried up the sphere. Such frames turn nowhere faster than the azimuth does, neither at the normal, where meridian
 // planes do, nor at backscattering, where scattering planes do, so that linear interpolation is safe everywhere.
+//
+// A path's wavelengths are a quarter of the range apart (Wavelengths::sample), so all four lie at the same place in
+// their quarters: a node keeps the four quarters beside each other, and one load brings a column of the matrix for all
+// of them. Any other wavelengths are read one by one.
 
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
 #include <vector>
 
@@ -18,10 +23,25 @@
 
 namespace patina::render {
 
+// Memory in pages of 2 MB where the system grants them: random reads of 20 MB miss the processor's list of small pages
+// nearly every time.
+void* allocate_in_large_pages(std::size_t bytes);
+template <class T>
+struct LargePages {
+    using value_type = T;
+    LargePages() = default;
+    template <class U>
+    LargePages(const LargePages<U>&) {}
+    T* allocate(std::size_t count) { return static_cast<T*>(allocate_in_large_pages(count * sizeof(T))); }
+    void deallocate(T* memory, std::size_t) { std::free(memory); }
+    friend bool operator==(const LargePages&, const LargePages&) { return true; }
+};
+
 class PaintTable {
   public:
     struct Size {
-        int angles = 32, azimuths = 33, wavelengths = 17;
+        int angles = 32, azimuths = 33;
+        int intervals = 4;  // of wavelength, in each quarter of the visible range
     };
     explicit PaintTable(const brdf::MuellerTable& table) : PaintTable(table, Size{}) {}
     PaintTable(const brdf::MuellerTable& table, const Size& size);
@@ -53,6 +73,16 @@ class PaintTable {
         Vec2 azimuth_o, azimuth_k;    // unit vectors: of the outgoing and of the incident propagation direction
     };
     Place place(const Vec3& outgoing, const Vec3& incident) const;
+    // Where a wavelength lies: quarter of the range, node below it in there, and how far beyond that.
+    struct WavelengthPlace {
+        int quarter, lower;
+        float weight;
+    };
+    WavelengthPlace wavelength_place(float nm) const;
+    // The first `count` columns of the body at `at` for four wavelengths in the order of the quarters.
+    template <int count>
+    void interpolate(const Place& at, const WavelengthPlace& wavelength, StokesPacket* columns) const;
+    double wavelength_nm(int index) const;  // of 4 intervals + 1 nodes over the range
     void tabulate_body(const brdf::MuellerTable& table);
     void tabulate_specular(const brdf::MuellerTable& table);
     void tabulate_sampling();
@@ -69,11 +99,14 @@ class PaintTable {
     };
 
     Size size_;
-    std::size_t block_;                           // halves a node holds: [column][wavelength][row]
-    std::vector<std::uint16_t> body_;             // [theta_o][theta_i][phi][block]
-    std::vector<std::array<float, 4>> specular_;  // [theta][wavelength]
-    std::vector<float> specular_share_;           // [theta_o]
-    std::vector<DirectionCells> directions_;      // [theta_o]
+    double only_wavelength_nm_ = 0;  // of a table that has just one; no intervals then
+    int nodes_ = 1;                  // of wavelength in a quarter, both its ends
+    int specular_wavelengths_ = 1;   // nodes over the whole range
+    std::size_t block_;              // halves a node holds: [node of wavelength][column][row][quarter]
+    std::vector<std::uint16_t, LargePages<std::uint16_t>> body_;  // [theta_o][theta_i][phi][block]
+    std::vector<std::array<float, 4>> specular_;                  // [theta][wavelength]
+    std::vector<float> specular_share_;                           // [theta_o]
+    std::vector<DirectionCells> directions_;                      // [theta_o]
 };
 
 }  // namespace patina::render

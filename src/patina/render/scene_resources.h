@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "patina/brdf/merl_table.h"
 #include "patina/brdf/mueller_table.h"
 #include "patina/core/bitmap.h"
 #include "patina/core/mesh.h"
@@ -24,6 +25,10 @@ struct SceneResources {
 
     // A BRDF table, or a recipe that is solved first.
     std::function<std::shared_ptr<const brdf::MuellerTable>(const std::string& path)> load_brdf_table;
+
+    // Measured tables: a .pbsdf file, a MERL .binary file.
+    std::function<std::shared_ptr<const brdf::HalfAngleTable>(const std::string& path)> load_half_angle_table;
+    std::function<std::shared_ptr<const brdf::MerlTable>(const std::string& path)> load_merl_table;
 
     // Optical constants by name or file; empty: the built-in library (optics/materials.h). Throws Error(input).
     std::function<optics::OpticalConstants(const std::string& name)> material;

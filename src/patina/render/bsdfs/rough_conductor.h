@@ -59,7 +59,4 @@ struct RoughConductor {
     }
 };
 
-// `alpha` or `alpha_u` and `alpha_v`, and `distribution` ("ggx" or "beckmann"; the default is Mitsuba's, beckmann).
-Microfacets microfacets_of(const Properties& node);
-
 }  // namespace patina::render
