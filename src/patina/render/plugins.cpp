@@ -133,6 +133,14 @@ void add_integrators(std::vector<PluginDescriptor>& all) {
     integrator("distribution", "Distribution ray tracing: E(S|G)*(D|G)?L.", "false", spread);
     integrator("light", "Light tracing, from the lamps to the camera; no mirrors and glass before the eye.", "false");
     integrator("bidirectional", "Bidirectional path tracing with multiple importance sampling, polarized.", "false");
+    all.push_back({"integrator",
+                   "radiosity",
+                   "Diffuse scenes as a linear system over patches, solved before the picture; no limit of depth.",
+                   {{"patches", "integer", "", "600", "1 .. 6000", "about how many"},
+                    {"rays", "integer", "", "1024", ">= 1", "from each patch, for its form factors"},
+                    {"solver", "string", "", "lu", "lu, jacobi, gauss_seidel, neumann", "of the linear system"},
+                    {"gather", "boolean", "", "true", "", "gather light at each point; false shows the patches"},
+                    {"hide_emitters", "boolean", "", "false", "", "emitters do not show directly"}}});
     all.push_back({"integrator", "stokes", "Wraps an integrator; every picture has Stokes components anyway.", {}});
     all.push_back({"texture",
                    "bitmap",

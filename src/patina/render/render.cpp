@@ -169,6 +169,7 @@ class Renderer {
     }
     double relative_noise() const { return film_.relative_noise(); }
     bool knows_noise() const { return !integrator_->splats(); }
+    std::map<std::string, std::string> integrator_notes() const { return integrator_->notes(); }
     std::uint64_t seed() const { return seed_; }
     const NonFiniteSamples& non_finite() const { return non_finite_; }
     std::size_t pixel_count() const { return film_.pixel_count(); }
@@ -326,6 +327,7 @@ Pictures render_parts(const Scene& scene, const RenderOptions& options, const Jo
     Pictures pictures = renderer.develop();
     std::map<std::string, std::string>& metadata = pictures.whole.metadata;
     metadata = scene.notes;
+    metadata.merge(renderer.integrator_notes());
     metadata["samples_per_pixel"] = fmt::format("{}", done);
     metadata["seed"] = fmt::format("{}", renderer.seed());
     if (renderer.knows_noise()) metadata["relative_noise"] = fmt::format("{:.3g}", renderer.relative_noise());

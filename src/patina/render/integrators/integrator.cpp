@@ -1,10 +1,13 @@
 #include "patina/render/integrators/integrator.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "patina/core/error.h"
 #include "patina/render/integrators/bidirectional.h"
 #include "patina/render/integrators/path.h"
+#include "patina/render/integrators/radiosity.h"
 #include "patina/render/integrators/ray_tree.h"
 #include "patina/render/plugins.h"
 
@@ -46,9 +49,26 @@ std::unique_ptr<Integrator> bidirectional(const Properties& node) {
     return std::make_unique<BidirectionalIntegrator>(settings);
 }
 
+std::unique_ptr<Integrator> radiosity(const Properties& node) {
+    RadiosityIntegrator::Settings settings;
+    settings.patches = at_least(node, "patches", settings.patches, 1);
+    settings.rays = at_least(node, "rays", settings.rays, 1);
+    settings.gather = node.boolean("gather", true);
+    settings.hide_emitters = node.boolean("hide_emitters", false);
+    const std::vector<std::string> names = {"lu", "jacobi", "gauss_seidel", "neumann"};
+    const std::string solver = node.string("solver", "lu");
+    const auto found = std::find(names.begin(), names.end(), solver);
+    if (found == names.end())
+        throw input_error(node.location_of("solver"), fmt::format("unknown solver \"{}\"", solver), "",
+                          did_you_mean(solver, names));
+    settings.solver = static_cast<RadiosityIntegrator::Solver>(found - names.begin());
+    return std::make_unique<RadiosityIntegrator>(settings);
+}
+
 std::unique_ptr<Integrator> build_named(const Properties& node) {
     if (node.type == "appel" || node.type == "whitted" || node.type == "distribution") return ray_tree(node);
     if (node.type == "light" || node.type == "bidirectional") return bidirectional(node);
+    if (node.type == "radiosity") return radiosity(node);
     return std::make_unique<PathIntegrator>(common_settings<PathIntegrator::Settings>(node, false));
 }
 

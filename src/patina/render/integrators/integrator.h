@@ -1,6 +1,7 @@
 #pragma once
 // What every algorithm of light transport offers: the Stokes vectors that arrive along a camera ray, by class of path.
 
+#include <map>
 #include <memory>
 #include <string>
 
@@ -37,6 +38,8 @@ class Integrator {
     virtual bool splats() const { return false; }
     // Every contribution is one path whose events are known.
     virtual bool knows_paths() const { return true; }
+    // For the picture's metadata.
+    virtual std::map<std::string, std::string> notes() const { return {}; }
 };
 
 // The integrator a plugin names; `stokes` wraps another and changes nothing, for every picture here has Stokes
