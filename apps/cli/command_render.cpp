@@ -12,8 +12,8 @@ namespace {
 
 struct Options {
     std::string scene, output, integrator, time, size, crop;
-    std::vector<std::string> defines;
-    int samples = 0;
+    std::vector<std::string> defines, light_paths;
+    int samples = 0, neumann = 0;
     double noise = 0.0;
     std::uint64_t seed = 0;
     bool stokes_rgb = false, png = true;
@@ -62,6 +62,14 @@ jobs::RenderRequest make_request(const Options& options, const CLI::App& command
     if (!options.size.empty()) request.options.size = parse_size(options.size);
     if (!options.crop.empty()) request.options.crop = parse_crop(options.crop);
     if (!options.integrator.empty()) request.options.integrator = options.integrator;
+    for (const std::string& output : options.light_paths) {
+        const size_t equals = output.find('=');
+        if (equals == std::string::npos)
+            throw Error(ErrorKind::usage, fmt::format("--lpe {}: write name=EXPRESSION, as in direct=LDE", output));
+        request.options.light_paths.push_back({output.substr(0, equals), output.substr(equals + 1)});
+        jobs::part_path(options.output, request.options.light_paths.back().name);
+    }
+    request.options.neumann_terms = options.neumann;
     if (command.count("--seed")) request.options.seed = options.seed;
     return request;
 }
@@ -69,8 +77,11 @@ jobs::RenderRequest make_request(const Options& options, const CLI::App& command
 int run(const Options& options, const CLI::App& command, Session& session) {
     const jobs::RenderRequest request = make_request(options, command, session);
     jobs::check_picture_output(options.output);
-    const StokesImage image = jobs::render_scene(request, session.control());
-    const std::vector<std::string> written = jobs::write_picture(options.output, image, options.stokes_rgb, options.png);
+    const render::Pictures pictures = jobs::render_scene(request, session.control());
+    const StokesImage& image = pictures.whole;
+    std::vector<std::string> written = jobs::write_picture(options.output, image, options.stokes_rgb, options.png);
+    for (const auto& [name, part] : pictures.parts)
+        written.push_back(jobs::write_picture(jobs::part_path(options.output, name), part, options.stokes_rgb, false).front());
 
     Console& console = session.console;
     console.end_progress();
@@ -78,6 +89,9 @@ int run(const Options& options, const CLI::App& command, Session& session) {
     for (const auto& [key, value] : image.metadata)
         if (key.starts_with("warning")) console.note("warning: " + value);
     console.result(fmt::format("{}: {} x {} pixels", options.output, image.width, image.height));
+    for (size_t part = 0; part < pictures.parts.size(); ++part)
+        console.result(fmt::format("{}: {}", written[written.size() - pictures.parts.size() + part], pictures.parts[part].second.metadata.at("light_paths")));
+    if (!meta("neumann_norm").empty()) console.result(fmt::format("norm of the transport operator, as seen here: {}", meta("neumann_norm")));
     nlohmann::json document = {{"schema", "patina/render/1"}, {"written", written}, {"width", image.width}, {"height", image.height}, {"metadata", image.metadata}};
     console.document(document);
     if (meta("stopped") == "yes") {
@@ -103,6 +117,8 @@ void add_render(CLI::App& program, Session& session) {
     command->add_option("--crop", options->crop, "window of pixels x0,y0,x1,y1");
     command->add_option("--seed", options->seed, "seed of the random numbers; the same seed gives the same bits");
     command->add_option("-D,--define", options->defines, "set a <default> of the scene: name=value (repeatable)")->take_all()->allow_extra_args(false);
+    command->add_option("--lpe", options->light_paths, "also write the light of these paths to OUT.name.exr: name=EXPRESSION with L light, E eye, D diffuse, G glossy, S specular, . any, ( ) | * + ?, as in caustics=LS+DE (repeatable)")->take_all()->allow_extra_args(false);
+    command->add_option("--neumann", options->neumann, "also write the first K terms of the Neumann series, L_e, T L_e, ..., and the rest")->check(CLI::Range(1, 100));
     command->add_flag("--stokes-rgb", options->stokes_rgb, "write Mitsuba's S0.R ... S3.B channels");
     command->add_flag("!--no-png", options->png, "do not write a PNG beside the EXR");
     command->footer("example: patina render examples/painted_spheres.xml -o spheres.exr --spp 64");

@@ -1,5 +1,7 @@
 #include "patina/jobs/render.h"
 
+#include <algorithm>
+#include <cctype>
 #include <mutex>
 
 #include <fmt/format.h>
@@ -93,16 +95,30 @@ render::SceneResources scene_resources(std::vector<std::string>& warnings, const
     return resources;
 }
 
-StokesImage render_scene(const RenderRequest& request, const JobControl& control) {
+render::Pictures render_scene(const RenderRequest& request, const JobControl& control) {
     std::vector<std::string> warnings;
     const std::shared_ptr<const Properties> tree = io::read_mitsuba_scene(request.scene, request.variables);
     const std::shared_ptr<const render::Scene> scene = render::build_scene(*tree, scene_resources(warnings, control));
-    StokesImage image = render::render(*scene, request.options, control);
-    image.metadata["command"] = request.command;
-    image.metadata["scene"] = request.scene.string();
-    image.metadata["software"] = std::string("patina ") + PATINA_VERSION;
-    for (size_t i = 0; i < warnings.size(); ++i) image.metadata[fmt::format("warning_{:02}", i)] = warnings[i];
-    return image;
+    render::Pictures pictures = render::render_parts(*scene, request.options, control);
+    const auto add_provenance = [&](StokesImage& image) {
+        image.metadata["command"] = request.command;
+        image.metadata["scene"] = request.scene.string();
+        image.metadata["software"] = std::string("patina ") + PATINA_VERSION;
+        for (size_t i = 0; i < warnings.size(); ++i) image.metadata[fmt::format("warning_{:02}", i)] = warnings[i];
+    };
+    add_provenance(pictures.whole);
+    for (auto& [name, image] : pictures.parts) add_provenance(image);
+    return pictures;
+}
+
+fs::path part_path(const fs::path& path, const std::string& name) {
+    const bool plain = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+        return std::isalnum(c) || c == '_' || c == '-';
+    });
+    if (!plain)
+        throw Error(ErrorKind::usage, fmt::format("\"{}\" cannot name a picture: use letters, digits, _ and -", name));
+    fs::path part = path;
+    return part.replace_extension("." + name + path.extension().string());
 }
 
 void check_picture_output(const fs::path& path) {

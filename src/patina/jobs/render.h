@@ -23,10 +23,14 @@ struct RenderRequest {
 // which must outlive the resources.
 render::SceneResources scene_resources(std::vector<std::string>& warnings, const JobControl& control = {});
 
-StokesImage render_scene(const RenderRequest& request, const JobControl& control = {});
+// The picture, and the parts that the options ask for.
+render::Pictures render_scene(const RenderRequest& request, const JobControl& control = {});
 
 // Throws Error(usage) unless the name ends in .exr, before anything long is started.
 void check_picture_output(const std::filesystem::path& path);
+
+// Where a part is written: OUT.name.exr beside OUT.exr. Throws Error(usage) for names that are no part of a file name.
+std::filesystem::path part_path(const std::filesystem::path& path, const std::string& name);
 
 // Writes the EXR and, if asked, a PNG of the same name; returns the names written.
 std::vector<std::string> write_picture(const std::filesystem::path& path, const StokesImage& image, bool stokes_rgb, bool png);

@@ -6,7 +6,6 @@ namespace patina::render {
 
 namespace {
 
-// Power on average over the visible range, for choosing between lights; only ratios matter.
 struct PowerOf {
     const Geometry& geometry;
 
@@ -18,7 +17,9 @@ struct PowerOf {
     float operator()(const SpotEmitter& e) const {
         return 2 * pi_f * (1 - std::cos(0.5f * (e.cutoff_rad + e.beam_width_rad))) * e.intensity.average();
     }
-    float operator()(const ConstantEmitter&) const { return 0; }
+    float operator()(const ConstantEmitter& e) const {
+        return sqr(2 * pi_f * geometry.radius()) * e.radiance.average();
+    }
     float operator()(const EnvironmentEmitter& e) const {
         return sqr(pi_f * geometry.radius()) * static_cast<float>(e.rows.total()) * e.illuminant.average();
     }
@@ -38,6 +39,7 @@ struct Draw {
         out.distance = d.norm();
         out.direction = d / out.distance;
         if (out.direction.dot(at.normal) >= 0) return false;
+        out.normal = at.normal;
         out.pdf = at.pdf;
         out.radiance = e.radiance.at(w);
         return true;
@@ -85,15 +87,19 @@ float SpotEmitter::falloff(const Vec3& direction) const {
     return (cutoff_rad - std::acos(cos)) / (cutoff_rad - beam_width_rad);
 }
 
+float emitted_power(const Emitter& emitter, const Geometry& geometry) {
+    return std::visit(PowerOf{geometry}, emitter);
+}
+
 Lights::Lights(std::vector<Emitter> emitters, const Geometry& geometry)
     : emitters_(std::move(emitters)), slot_(emitters_.size(), -1) {
     std::vector<double> powers;
     for (int i = 0; i < static_cast<int>(emitters_.size()); ++i) {
         const bool constant = std::holds_alternative<ConstantEmitter>(emitters_[i]);
         if (constant || std::holds_alternative<EnvironmentEmitter>(emitters_[i])) environments_.push_back(i);
-        const double power = std::visit(PowerOf{geometry}, emitters_[i]);
-        // A dark light stays in the list with no chance to be drawn, so that hits on it have a density (0).
         if (constant) continue;
+        // A dark light stays in the list with no chance to be drawn, so that hits on it have a density (0).
+        const double power = emitted_power(emitters_[i], geometry);
         slot_[i] = static_cast<int>(sampled_.size());
         sampled_.push_back(i);
         powers.push_back(power);
@@ -112,7 +118,8 @@ bool Lights::sample(const Geometry& geometry, const Vec3& from, const Wavelength
     const DiscreteDistribution::Choice choice = choice_.sample(u);
     sample.delta = false;
     sample.distance = INFINITY;
-    if (!std::visit(Draw{geometry, from, w, u2, sample}, emitters_[sampled_[choice.index]])) return false;
+    sample.emitter = sampled_[choice.index];
+    if (!std::visit(Draw{geometry, from, w, u2, sample}, emitters_[sample.emitter])) return false;
     sample.pdf *= choice.probability;
     return true;
 }

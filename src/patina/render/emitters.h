@@ -17,6 +17,8 @@ struct LightSample {
     float pdf = 0;  // per solid angle; 1 for a delta light
     bool delta = false;
     Float4 radiance;  // radiance, or the irradiance on a plane across the direction for a delta light
+    int emitter = -1;
+    Vec3 normal = Vec3::Zero();  // of a surface that shines
 };
 
 // A surface that shines from its outside, `area`: the same radiance into every direction (Lambert's law).
@@ -72,6 +74,10 @@ struct EnvironmentEmitter {
 using Emitter =
     std::variant<AreaEmitter, PointEmitter, DirectionalEmitter, SpotEmitter, ConstantEmitter, EnvironmentEmitter>;
 
+// Power on average over the visible range, into a scene of this size for light from infinity; for choosing between
+// lights: only ratios matter.
+float emitted_power(const Emitter& emitter, const Geometry& geometry);
+
 class Lights {
   public:
     Lights() = default;
@@ -93,6 +99,11 @@ class Lights {
                       const Vec3& from) const {
         return choice_.probability(slot_[emitter]) * geometry.shape_pdf(hit, at, from);
     }
+    // Probability with which sample() chooses this emitter.
+    float choice_probability(int emitter) const {
+        return slot_[emitter] < 0 ? 0.0f : choice_.probability(slot_[emitter]);
+    }
+    const std::vector<int>& environments() const { return environments_; }
     // What comes from infinity, each environment with its density in sample() (0: never sampled).
     template <class Visitor>
     void for_each_environment(const Vec3& direction, const Wavelengths& w, const Visitor& visit) const {

@@ -62,6 +62,14 @@ float PixelFilter::sample(float u) const {
     return inverse_cdf_[i] + (x - i) * (inverse_cdf_[i + 1] - inverse_cdf_[i]);
 }
 
+float PixelFilter::density(float offset) const {
+    if (inverse_cdf_.empty()) return std::abs(offset) <= 0.5f ? 1.0f : 0.0f;
+    // Between two nodes sample() is uniform.
+    const auto upper = std::upper_bound(inverse_cdf_.begin(), inverse_cdf_.end(), offset);
+    if (upper == inverse_cdf_.begin() || upper == inverse_cdf_.end()) return 0;
+    return 1 / ((filter_nodes - 1) * (*upper - *(upper - 1)));
+}
+
 std::vector<double> FilmSettings::default_bins() {
     std::vector<double> edges;
     for (int i = 0; i <= 16; ++i) edges.push_back(380 + 25.0 * i);

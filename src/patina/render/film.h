@@ -21,10 +21,14 @@ class PixelFilter {
 
     // Offset from the pixel's centre, in pixels.
     Vec2 sample(const Vec2& u) const { return {sample(u.x()), sample(u.y())}; }
+    // Density of sample() per square pixel, and the largest offset along x or y that it draws.
+    float density(const Vec2& offset) const { return density(offset.x()) * density(offset.y()); }
+    float reach() const { return inverse_cdf_.empty() ? 0.5f : inverse_cdf_.back(); }
     const std::string& name() const { return name_; }
 
   private:
     float sample(float u) const;
+    float density(float offset) const;
 
     std::string name_ = "box";
     std::vector<float> inverse_cdf_;  // offsets at equidistant u; empty for the box
@@ -50,6 +54,15 @@ class Film {
 
     // Adds one path: its Stokes vector at its four wavelengths.
     void add(std::size_t pixel, const StokesPacket& stokes, const Wavelengths& w, bool hit) {
+        add_light(pixel, stokes, w);
+        add_count(pixel, hit);
+    }
+    // Counts a path that brought nothing (more).
+    void add_count(std::size_t pixel, bool hit) {
+        sums_[pixel * stride_ + bins_ + 4] += Float4{1.0f, hit ? 1.0f : 0.0f, 0.0f, 0.0f};
+    }
+    // Adds light without counting a path.
+    void add_light(std::size_t pixel, const StokesPacket& stokes, const Wavelengths& w) {
         Float4* sums = &sums_[pixel * stride_];
         const StokesPacket spectral = by_wavelength(stokes);
         Float4 colour[4]{};
@@ -66,7 +79,6 @@ class Film {
             colour[component][3] = colour[component][1] * colour[component][1];
             sums[bins_ + component] += colour[component];
         }
-        sums[bins_ + 4] += Float4{1.0f, hit ? 1.0f : 0.0f, 0.0f, 0.0f};
     }
 
     // Root mean square over the pixels of the standard error of the luminance, over the picture's mean luminance.

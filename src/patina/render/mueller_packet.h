@@ -82,6 +82,16 @@ class Throughput {
                spread(radiance);
     }
 
+    // Camera Stokes vector of light that arrives now along `direction`, in the frame with this x axis.
+    StokesPacket of(const StokesPacket& stokes, const Vec3& x_axis, const Vec3& direction) const {
+        const StokesPacket first = columns_[0] * spread(stokes_row(stokes, 0));
+        if (depolarized_) return first;
+        const DoubleAngle r = rotation_between(direction, x_axis, x_axis_);
+        const Float4 q = stokes_row(stokes, 1), u = stokes_row(stokes, 2);
+        return first + columns_[1] * spread(q * r.cos + u * r.sin) + columns_[2] * spread(u * r.cos - q * r.sin) +
+               columns_[3] * spread(stokes_row(stokes, 3));
+    }
+
     // Appends an event (world axes), its weight included.
     void append(const ScatteringMatrix& event, const Vec3& outgoing) {
         if (event.form == ScatteringMatrix::Form::depolarizing) {

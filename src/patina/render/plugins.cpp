@@ -115,11 +115,31 @@ void add_film(std::vector<PluginDescriptor>& all) {
 }
 
 void add_integrators(std::vector<PluginDescriptor>& all) {
+    const auto integrator = [&](const char* name, const char* doc, const char* hide_emitters,
+                                std::vector<ParameterDescriptor> more = {}) {
+        std::vector<ParameterDescriptor> parameters = {
+            {"max_depth", "integer", "", "-1", ">= -1", "segments of a path, 1 = emitters only, -1 = no limit"},
+            {"rr_depth", "integer", "", "5", ">= 1", "segments before Russian roulette begins"},
+            {"hide_emitters", "boolean", "", hide_emitters, "", "emitters do not show directly"}};
+        parameters.insert(parameters.end(), more.begin(), more.end());
+        all.push_back({"integrator", name, doc, std::move(parameters)});
+    };
+    const std::vector<ParameterDescriptor> spread = {
+        {"light_samples", "integer", "", "1; distribution 4", ">= 1", "shadow rays at the first surface"},
+        {"lobe_samples", "integer", "", "1; distribution 4", ">= 1", "rays into the lobe of the first surface"}};
+    integrator("path", "Path tracing with light sampling, polarized.", "false");
+    integrator("appel", "Direct light only: E(D|G)L.", "true", spread);
+    integrator("whitted", "Direct light, mirrors and refraction: ES*(D|G)L.", "true", spread);
+    integrator("distribution", "Distribution ray tracing: E(S|G)*(D|G)?L.", "false", spread);
+    integrator("light", "Light tracing, from the lamps to the camera; no mirrors and glass before the eye.", "false");
+    integrator("bidirectional", "Bidirectional path tracing with multiple importance sampling, polarized.", "false");
     all.push_back({"integrator",
-                   "path",
-                   "Path tracing with light sampling, polarized.",
-                   {{"max_depth", "integer", "", "-1", ">= -1", "segments of a path, 1 = emitters only, -1 = no limit"},
-                    {"rr_depth", "integer", "", "5", ">= 1", "segments before Russian roulette begins"},
+                   "radiosity",
+                   "Diffuse scenes as a linear system over patches, solved before the picture; no limit of depth.",
+                   {{"patches", "integer", "", "600", "1 .. 6000", "about how many"},
+                    {"rays", "integer", "", "1024", ">= 1", "from each patch, for its form factors"},
+                    {"solver", "string", "", "lu", "lu, jacobi, gauss_seidel, neumann", "of the linear system"},
+                    {"gather", "boolean", "", "true", "", "gather light at each point; false shows the patches"},
                     {"hide_emitters", "boolean", "", "false", "", "emitters do not show directly"}}});
     all.push_back({"integrator", "stokes", "Wraps an integrator; every picture has Stokes components anyway.", {}});
     all.push_back({"texture",

@@ -1,5 +1,6 @@
 #include "patina/render/render.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <mutex>
@@ -8,6 +9,8 @@
 
 #include "patina/core/error.h"
 #include "patina/core/parallel.h"
+#include "patina/render/picture_parts.h"
+#include "patina/render/plugins.h"
 #include "patina/render/scene.h"
 
 namespace patina::render {
@@ -52,7 +55,14 @@ std::unique_ptr<Integrator> integrator_of(const Scene& scene, const RenderOption
     Properties chosen;
     chosen.category = "integrator";
     chosen.type = options.integrator.value_or("path");
-    if (node) chosen.entries = (node->type == "stokes" ? *node->only_child("integrator") : *node).entries;
+    if (node) {
+        // Keep what the scene says about its own integrator where the other knows it too.
+        const PluginDescriptor& plugin = expect_plugin(chosen);
+        for (const auto& entry : (node->type == "stokes" ? *node->only_child("integrator") : *node).entries)
+            if (std::any_of(plugin.parameters.begin(), plugin.parameters.end(),
+                            [&](const ParameterDescriptor& p) { return p.name == entry.name; }))
+                chosen.entries.push_back(entry);
+    }
     return build_integrator(chosen);
 }
 
@@ -81,36 +91,119 @@ bool all_finite(const StokesPacket& s) {
     return total == 0;
 }
 
+// Do the sixteen numbers vanish?
+bool all_zero(const StokesPacket& s) {
+    for (int i = 0; i < 16; ++i)
+        if (s[i] != 0) return false;
+    return true;
+}
+
+std::string neumann_name(int term, int terms) {
+    return term < terms ? fmt::format("neumann_{:02}", term) : "neumann_rest";
+}
+
+// What is asked for, and the terms of the Neumann series: paths by their number of scattering events.
+std::vector<LightPathExpression> expressions_of(const RenderOptions& options) {
+    constexpr int most_terms = 100;
+    std::vector<LightPathExpression> all;
+    for (const LightPathOutput& output : options.light_paths) all.push_back({output.name, output.expression});
+    if (options.neumann_terms < 0 || options.neumann_terms > most_terms)
+        throw Error(ErrorKind::usage, fmt::format("{} terms of the Neumann series are out of range 0 .. {}",
+                                                  options.neumann_terms, most_terms));
+    for (int term = 0; options.neumann_terms > 0 && term <= options.neumann_terms; ++term)
+        all.push_back({neumann_name(term, options.neumann_terms),
+                       "E" + std::string(term, '.') + (term < options.neumann_terms ? "L" : ".*L")});
+    for (std::size_t i = 0; i < all.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (all[i].name == all[j].name)
+                throw Error(ErrorKind::usage, fmt::format("two pictures are named \"{}\"", all[i].name));
+    return all;
+}
+
 class Renderer {
   public:
-    Renderer(const Scene& scene, const RenderOptions& options)
+    Renderer(const Scene& scene, const RenderOptions& options, const JobControl& control)
         : scene_(scene),
           settings_(film_of(scene, options)),
           sensor_(build_sensor(*scene.sensor_node, settings_.width, settings_.height)),
           integrator_(integrator_of(scene, options)),
+          expressions_(expressions_of(options)),
+          classes_(expressions_),
           film_(settings_, *scene.matching),
-          seed_(options.seed.value_or(scene.seed)) {}
+          seed_(options.seed.value_or(scene.seed)) {
+        if (!expressions_.empty() && !integrator_->knows_paths())
+            throw Error(ErrorKind::usage,
+                        "this integrator does not follow single paths: no light-path expressions and "
+                        "no Neumann series with it; use path or bidirectional");
+        if (options.noise_target && integrator_->splats())
+            throw Error(ErrorKind::usage,
+                        "the noise of an integrator that begins at the lamps is not estimated while "
+                        "it runs: give --spp or --time instead of --noise");
+        if (!expressions_.empty())
+            for (int c = 0; c < classes_.class_count(); ++c) class_films_.emplace_back(settings_, *scene.matching);
+        integrator_->prepare(problem(), control);
+    }
 
     // Adds the samples [first, last) to every pixel.
     void add_pass(int first, int last) {
         const int across = (settings_.crop_width + tile_size - 1) / tile_size;
         const int down = (settings_.crop_height + tile_size - 1) / tile_size;
-        parallel_for(0, static_cast<std::ptrdiff_t>(across) * down, [&](std::ptrdiff_t tile) {
-            const int x0 = static_cast<int>(tile % across) * tile_size,
-                      y0 = static_cast<int>(tile / across) * tile_size;
-            for (int y = y0; y < std::min(y0 + tile_size, settings_.crop_height); ++y)
-                for (int x = x0; x < std::min(x0 + tile_size, settings_.crop_width); ++x)
-                    for (int sample = first; sample < last; ++sample) add_sample(x, y, sample);
-        });
+        const std::ptrdiff_t tiles = static_cast<std::ptrdiff_t>(across) * down;
+        // Splats are kept until a batch of tiles is done, and then added in the tiles' order.
+        const std::ptrdiff_t batch = integrator_->splats() ? 64 : tiles;
+        for (std::ptrdiff_t begin = 0; begin < tiles; begin += batch) {
+            const std::ptrdiff_t end = std::min(begin + batch, tiles);
+            std::vector<std::vector<Splat>> splats(integrator_->splats() ? end - begin : 0);
+            parallel_for(begin, end, [&](std::ptrdiff_t tile) {
+                PathRecord record(classes_.class_count());
+                const int x0 = static_cast<int>(tile % across) * tile_size,
+                          y0 = static_cast<int>(tile / across) * tile_size;
+                for (int y = y0; y < std::min(y0 + tile_size, settings_.crop_height); ++y)
+                    for (int x = x0; x < std::min(x0 + tile_size, settings_.crop_width); ++x)
+                        for (int sample = first; sample < last; ++sample) add_sample(x, y, sample, record);
+                if (integrator_->splats()) splats[tile - begin] = std::move(record.splats);
+            });
+            for (const auto& of_tile : splats)
+                for (const Splat& splat : of_tile) add_splat(splat);
+        }
     }
     double relative_noise() const { return film_.relative_noise(); }
+    bool knows_noise() const { return !integrator_->splats(); }
+    std::map<std::string, std::string> integrator_notes() const { return integrator_->notes(); }
     std::uint64_t seed() const { return seed_; }
     const NonFiniteSamples& non_finite() const { return non_finite_; }
     std::size_t pixel_count() const { return film_.pixel_count(); }
-    StokesImage develop() const { return film_.develop(); }
+
+    Pictures develop() const {
+        Pictures pictures{film_.develop(), {}};
+        if (!knows_noise()) pictures.whole.variance.clear();
+        if (expressions_.empty()) return pictures;
+
+        // The whole, and each part, is the exact sum of its classes of paths.
+        std::vector<StokesImage> classes;
+        for (const Film& film : class_films_) classes.push_back(film.develop());
+        align_parts(classes);
+        StokesImage empty = classes.front();
+        std::fill(empty.spectral.begin(), empty.spectral.end(), 0.0f);
+        std::fill(empty.rgb.begin(), empty.rgb.end(), 0.0f);
+        empty.variance.clear();
+        pictures.whole.spectral = empty.spectral;
+        pictures.whole.rgb = empty.rgb;
+        for (const StokesImage& image : classes) add_part(pictures.whole, image);
+        for (int e = 0; e < static_cast<int>(expressions_.size()); ++e) {
+            StokesImage part = empty;
+            for (int c = 0; c < classes_.class_count(); ++c)
+                if (classes_.belongs(c, e)) add_part(part, classes[c]);
+            part.metadata["light_paths"] = expressions_[e].text;
+            pictures.parts.emplace_back(expressions_[e].name, std::move(part));
+        }
+        return pictures;
+    }
 
   private:
-    void add_sample(int x, int y, int sample) {
+    TransportProblem problem() const { return {scene_, sensor_, classes_}; }
+
+    void add_sample(int x, int y, int sample, PathRecord& record) {
         const int film_x = settings_.crop_x + x, film_y = settings_.crop_y + y;
         const auto pixel = static_cast<std::uint32_t>(film_y) * static_cast<std::uint32_t>(settings_.width) +
                            static_cast<std::uint32_t>(film_x);
@@ -125,22 +218,76 @@ class Renderer {
         const Vec2 hue = sampler.next2();
         const Wavelengths wavelengths = Wavelengths::sample(0.25f * (std::floor(4 * hue.y()) + hue.x()));
 
-        const PathResult path = integrator_->trace(scene_, sensor_.ray(film, lens), wavelengths, sampler);
-        if (!all_finite(path.stokes)) {
+        record.begin();
+        const std::size_t first_splat = record.splats.size();
+        integrator_->trace(problem(), sensor_.ray(film, lens), wavelengths, sampler, record);
+        StokesPacket total = record.total(), probe = total;
+        for (std::size_t i = first_splat; i < record.splats.size(); ++i) probe += record.splats[i].stokes * 0.0f;
+        if (!all_finite(probe)) {
             non_finite_.note(film_x, film_y, sample);
+            record.splats.resize(first_splat);
             return;
         }
-        film_.add(static_cast<std::size_t>(y) * settings_.crop_width + x, path.stokes, wavelengths, path.hit);
+        const std::size_t place = static_cast<std::size_t>(y) * settings_.crop_width + x;
+        film_.add(place, total, wavelengths, record.hit);
+        for (std::size_t c = 0; c < class_films_.size(); ++c) {
+            const StokesPacket& stokes = record.of_class(static_cast<int>(c));
+            if (!all_zero(stokes)) class_films_[c].add_light(place, stokes, wavelengths);
+            class_films_[c].add_count(place, record.hit);
+        }
+    }
+
+    // Gives each pixel of the window its share by the reconstruction filter. There is one path from the lamps for every
+    // sample of the window, and each estimates the light on the whole film.
+    void add_splat(const Splat& splat) {
+        const float share = static_cast<float>(static_cast<double>(settings_.width) * settings_.height /
+                                               static_cast<double>(film_.pixel_count()));
+        const float x = splat.film.x() * settings_.width - 0.5f - settings_.crop_x,
+                    y = splat.film.y() * settings_.height - 0.5f - settings_.crop_y;
+        const float reach = settings_.filter.reach();
+        const int x0 = std::max(0, static_cast<int>(std::ceil(x - reach))),
+                  x1 = std::min(settings_.crop_width - 1, static_cast<int>(std::floor(x + reach)));
+        const int y0 = std::max(0, static_cast<int>(std::ceil(y - reach))),
+                  y1 = std::min(settings_.crop_height - 1, static_cast<int>(std::floor(y + reach)));
+        for (int row = y0; row <= y1; ++row)
+            for (int column = x0; column <= x1; ++column) {
+                const StokesPacket light = splat.stokes * (share * settings_.filter.density(Vec2(x - column, y - row)));
+                const std::size_t place = static_cast<std::size_t>(row) * settings_.crop_width + column;
+                film_.add_light(place, light, splat.wavelengths);
+                if (!class_films_.empty()) class_films_[splat.path_class].add_light(place, light, splat.wavelengths);
+            }
     }
 
     const Scene& scene_;
     FilmSettings settings_;
     Sensor sensor_;
     std::unique_ptr<Integrator> integrator_;
+    std::vector<LightPathExpression> expressions_;
+    LightPathClassifier classes_;
     Film film_;
+    std::vector<Film> class_films_;  // one for each class of paths; empty when no parts are asked for
     std::uint64_t seed_;
     NonFiniteSamples non_finite_;
 };
+
+// Ratios of the energies of successive terms of the Neumann series, by sums of intensity over the picture.
+void note_transport_norm(const Pictures& pictures, int terms, std::map<std::string, std::string>& metadata) {
+    double before = 0, norm = 0;
+    for (int term = 0; term < terms; ++term) {
+        const auto part = std::find_if(pictures.parts.begin(), pictures.parts.end(),
+                                       [&](const auto& p) { return p.first == neumann_name(term, terms); });
+        const StokesImage& image = part->second;
+        double energy = 0;
+        for (std::size_t i = 0; i < image.spectral.size(); i += 4) energy += image.spectral[i];
+        if (term > 0 && before > 0) {
+            metadata[fmt::format("neumann_ratio_{:02}", term - 1)] = fmt::format("{:.6g}", energy / before);
+            // How much of the lamps the camera happens to see is no property of the transport.
+            if (term > 1) norm = std::max(norm, energy / before);
+        }
+        before = energy;
+    }
+    if (terms > 2) metadata["neumann_norm"] = fmt::format("{:.6g}", norm);
+}
 
 // Passes grow from one sample so that a first picture, and a stop, come soon.
 int next_pass(int done, int total) {
@@ -149,12 +296,12 @@ int next_pass(int done, int total) {
 
 }  // namespace
 
-StokesImage render(const Scene& scene, const RenderOptions& options, const JobControl& control) {
+Pictures render_parts(const Scene& scene, const RenderOptions& options, const JobControl& control) {
     const int wanted = options.samples_per_pixel.value_or(scene.samples_per_pixel);
     const bool open_ended = !options.samples_per_pixel && (options.time_limit_seconds || options.noise_target);
     if (wanted < 1) throw Error(ErrorKind::usage, fmt::format("samples per pixel must be 1 or more, not {}", wanted));
     const int total = open_ended ? (1 << 30) : wanted;
-    Renderer renderer(scene, options);
+    Renderer renderer(scene, options, control);
 
     const auto start = std::chrono::steady_clock::now();
     const auto elapsed = [&] {
@@ -177,15 +324,23 @@ StokesImage render(const Scene& scene, const RenderOptions& options, const JobCo
     if (non_finite > tolerated_non_finite * samples)
         throw Error(ErrorKind::runtime, fmt::format("{} of {:.0f} samples are not finite, first at {}", non_finite,
                                                     samples, renderer.non_finite().places()));
-    StokesImage image = renderer.develop();
-    image.metadata = scene.notes;
-    image.metadata["samples_per_pixel"] = fmt::format("{}", done);
-    image.metadata["seed"] = fmt::format("{}", renderer.seed());
-    image.metadata["relative_noise"] = fmt::format("{:.3g}", renderer.relative_noise());
-    image.metadata["non_finite_samples"] =
+    Pictures pictures = renderer.develop();
+    std::map<std::string, std::string>& metadata = pictures.whole.metadata;
+    metadata = scene.notes;
+    metadata.merge(renderer.integrator_notes());
+    metadata["samples_per_pixel"] = fmt::format("{}", done);
+    metadata["seed"] = fmt::format("{}", renderer.seed());
+    if (renderer.knows_noise()) metadata["relative_noise"] = fmt::format("{:.3g}", renderer.relative_noise());
+    metadata["non_finite_samples"] =
         non_finite ? fmt::format("{} at {}", non_finite, renderer.non_finite().places()) : "0";
-    if (stopped) image.metadata["stopped"] = "yes";
-    return image;
+    if (stopped) metadata["stopped"] = "yes";
+    for (auto& [name, part] : pictures.parts) part.metadata.insert(metadata.begin(), metadata.end());
+    note_transport_norm(pictures, options.neumann_terms, metadata);
+    return pictures;
+}
+
+StokesImage render(const Scene& scene, const RenderOptions& options, const JobControl& control) {
+    return render_parts(scene, options, control).whole;
 }
 
 }  // namespace patina::render

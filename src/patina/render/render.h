@@ -24,6 +24,12 @@ class Scene;  // render/scene.h: immutable, shared between threads
 // geometry, with the nearest legal name.
 std::shared_ptr<const Scene> build_scene(const Properties& root, const SceneResources& resources);
 
+// One picture beside the whole: the light of the paths that an expression accepts
+// (integrators/light_path_expression.h).
+struct LightPathOutput {
+    std::string name, expression;
+};
+
 // What the command line may override; empty = as the scene says.
 struct RenderOptions {
     std::optional<int> samples_per_pixel;      // sampler's sample_count; the default without either is 16
@@ -35,12 +41,27 @@ struct RenderOptions {
     std::optional<std::string> integrator;     // plugin name in place of the scene's
     std::optional<std::uint64_t> seed;
     std::vector<double> bin_edges_nm;  // spectral bins; empty = 16 bins over 380 .. 780 nm
+    std::vector<LightPathOutput> light_paths;
+    int neumann_terms = 0;  // pictures of this many powers of the transport operator, and of the rest
+};
+
+// A picture and its parts, named as asked for; the terms of the Neumann series, L_e, T L_e, T^2 L_e, ..., are
+// "neumann_00", "neumann_01", ... and "neumann_rest". Parts that share no path and leave none out add up to the whole
+// bit by bit, in any order of float additions.
+struct Pictures {
+    StokesImage whole;
+    std::vector<std::pair<std::string, StokesImage>> parts;
 };
 
 // Renders; the same scene, options and seed give the same bits for every number of threads (time and noise limits
 // decide only after which pass to stop). When JobControl asks to stop, the passes done so far are returned with the
 // metadata "stopped" = "yes". Samples that are not finite are left out, counted and located in the metadata
-// "non_finite_samples"; more than one in 10^4 is an Error(runtime).
+// "non_finite_samples"; more than one in 10^4 is an Error(runtime). With Neumann terms the metadata
+// "neumann_ratio_NN" are the energies in the picture of term NN + 1 over term NN, and "neumann_norm" the largest of
+// them: what one more application of the transport operator leaves of the light, as seen by this camera.
+Pictures render_parts(const Scene& scene, const RenderOptions& options, const JobControl& control = {});
+
+// The whole alone.
 StokesImage render(const Scene& scene, const RenderOptions& options, const JobControl& control = {});
 
 // The registry, for help, documentation and property tests.

@@ -51,6 +51,24 @@ void Sensor::refocus(const Vec3& direction, const Vec2& lens, Ray& ray) const {
     ray.direction = (rotation * (focus_distance * direction - start)).normalized();
 }
 
+bool Sensor::see(const Vec3& point, const Vec2& lens, Sight& sight) const {
+    Vec3 start = Vec3::Zero();
+    if (aperture_radius > 0) start.head<2>() = aperture_radius * concentric_disk(lens);
+    const Vec3 towards = rotation.transpose() * (point - origin) - start;
+    if (!(towards.z() > 0)) return false;
+
+    // All lens points see a place of the film at the same point of the plane in focus.
+    const Vec3 in_focus = start / focus_distance + towards / towards.z();
+    sight.film = {0.5f * (1 - in_focus.x() / tan_half_x), 0.5f * (1 - in_focus.y() / tan_half_y)};
+    if (sight.film.minCoeff() < 0 || sight.film.maxCoeff() >= 1) return false;
+    sight.from = origin + rotation * start;
+    sight.distance = towards.norm();
+    sight.direction = rotation * (towards / sight.distance);
+    sight.importance = importance(sight.direction);
+    sight.stokes_axis = sight.direction.cross(Vec3(rotation.col(1))).normalized();
+    return true;
+}
+
 Sensor build_sensor(const Properties& node, int film_width, int film_height) {
     expect_plugin(node);
     Sensor sensor;

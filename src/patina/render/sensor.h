@@ -30,6 +30,22 @@ struct Sensor {
         return result;
     }
 
+    // How a point is seen from a point of the lens.
+    struct Sight {
+        Vec2 film;
+        Vec3 from, direction;  // on the lens, and unit from there to the point
+        float distance = 0;
+        float importance = 0;  // density per solid angle of ray() for uniform places on the whole film
+        Vec3 stokes_axis;      // as ray() gives it
+    };
+    // False: the point is not on the film.
+    bool see(const Vec3& point, const Vec2& lens, Sight& sight) const;
+    // Density per solid angle of ray() in this direction for uniform places on the whole film (a ray of the camera's).
+    float importance(const Vec3& direction) const {
+        const float cos = direction.dot(Vec3(rotation.col(2)));
+        return 1 / (4 * tan_half_x * tan_half_y * cos * cos * cos);
+    }
+
   private:
     void refocus(const Vec3& direction, const Vec2& lens, Ray& ray) const;
 };

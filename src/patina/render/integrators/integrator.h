@@ -1,9 +1,14 @@
 #pragma once
-// What every algorithm of light transport offers: the Stokes vector that arrives along a camera ray.
+// What every algorithm of light transport offers: the Stokes vectors that arrive along a camera ray, by class of path.
 
+#include <map>
 #include <memory>
+#include <string>
 
+#include "patina/core/progress.h"
 #include "patina/core/properties.h"
+#include "patina/render/integrators/light_path_expression.h"
+#include "patina/render/integrators/path_record.h"
 #include "patina/render/random.h"
 #include "patina/render/sensor.h"
 #include "patina/render/spectrum.h"
@@ -12,16 +17,29 @@ namespace patina::render {
 
 class Scene;
 
-struct PathResult {
-    StokesPacket stokes{};  // in the camera ray's frame, at the path's wavelengths
-    bool hit = false;       // the camera ray met a surface
+// What all samples of a picture share.
+struct TransportProblem {
+    const Scene& scene;
+    const Sensor& sensor;
+    const LightPathClassifier& classes;
 };
 
 class Integrator {
   public:
     virtual ~Integrator() = default;
-    virtual PathResult trace(const Scene& scene, const Sensor::CameraRay& camera, const Wavelengths& wavelengths,
-                             Sampler& sampler) const = 0;
+
+    // Work before the first sample. Throws Error(input) for scenes that the method cannot do.
+    virtual void prepare(const TransportProblem&, const JobControl&) {}
+    // Adds one sample to the record. Its wavelengths are those of the splats as well.
+    virtual void trace(const TransportProblem& problem, const Sensor::CameraRay& camera, const Wavelengths& wavelengths,
+                       Sampler& sampler, PathRecord& record) const = 0;
+
+    // Samples write to pixels other than their own.
+    virtual bool splats() const { return false; }
+    // Every contribution is one path whose events are known.
+    virtual bool knows_paths() const { return true; }
+    // For the picture's metadata.
+    virtual std::map<std::string, std::string> notes() const { return {}; }
 };
 
 // The integrator a plugin names; `stokes` wraps another and changes nothing, for every picture here has Stokes

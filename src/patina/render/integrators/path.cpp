@@ -13,8 +13,15 @@ constexpr std::uint32_t first_draw = 8, draws_per_vertex = 8;
 // One path being traced: where it is, what it carries, and how the last step was drawn.
 class PathState {
   public:
-    PathState(const Scene& scene, const Sensor::CameraRay& camera, const Wavelengths& wavelengths, Sampler& sampler)
-        : scene_(scene), w_(wavelengths), sampler_(sampler), ray_(camera.ray), throughput_(camera.stokes_axis) {}
+    PathState(const TransportProblem& problem, const Sensor::CameraRay& camera, const Wavelengths& wavelengths,
+              Sampler& sampler, PathRecord& record)
+        : scene_(problem.scene),
+          classes_(problem.classes),
+          w_(wavelengths),
+          sampler_(sampler),
+          record_(record),
+          ray_(camera.ray),
+          throughput_(camera.stokes_axis) {}
 
     bool find_surface() {
         Hit hit;
@@ -27,7 +34,7 @@ class PathState {
     // Light of the environments that the last direction ran into.
     void add_environment() {
         scene_.lights.for_each_environment(ray_.direction, w_, [&](Float4 radiance, float light_pdf) {
-            add(throughput_.of_unpolarized(radiance * share_of_scattering(light_pdf)));
+            add(throughput_.of_unpolarized(radiance * share_of_scattering(light_pdf)), events_);
         });
     }
 
@@ -39,7 +46,7 @@ class PathState {
         if (largest(radiance) <= 0) return;
         const float light_pdf =
             last_delta_ ? 0.0f : scene_.lights.surface_pdf(emitter, scene_.geometry, hit_, point_, last_position_);
-        add(throughput_.of_unpolarized(radiance * share_of_scattering(light_pdf)));
+        add(throughput_.of_unpolarized(radiance * share_of_scattering(light_pdf)), events_);
     }
 
     // Light of a lamp drawn at random, scattered here.
@@ -56,7 +63,8 @@ class PathState {
         if (!visible(light)) return;
         const float share = light.delta ? 1.0f : power_heuristic(light.pdf, value.pdf);
         axes_to_world(value.f);
-        add(throughput_.of_unpolarized(light.radiance * (share / light.pdf), value.f, -ray_.direction));
+        const int events = classes_.after(events_, continuous_event(bsdf(), shading, outgoing));
+        add(throughput_.of_unpolarized(light.radiance * (share / light.pdf), value.f, -ray_.direction), events);
     }
 
     // Draws the next direction; false: the path ends.
@@ -64,7 +72,10 @@ class PathState {
         BsdfSample sample;
         const float lobe = sampler_.next();
         const Vec3 outgoing = point_.frame.to_local(-ray_.direction);
-        if (!bsdf_sample(bsdf(), shading_point(), outgoing, lobe, sampler_.next2(), sample)) return false;
+        const ShadingPoint shading = shading_point();
+        if (!bsdf_sample(bsdf(), shading, outgoing, lobe, sampler_.next2(), sample)) return false;
+        events_ = classes_.after(
+            events_, sample.delta ? ScatteringEvent::specular : continuous_event(bsdf(), shading, outgoing));
         axes_to_world(sample.weight);
         throughput_.append(sample.weight, -ray_.direction);
         if (sample.dispersed && !hero_only_) {
@@ -90,12 +101,11 @@ class PathState {
         return true;
     }
     bool carries_light() const { return largest(throughput_.intensity()) > 0; }
-    const StokesPacket& result() const { return result_; }
 
   private:
     const Bsdf& bsdf() const { return scene_.bsdfs[scene_.geometry.shapes[hit_.shape].bsdf]; }
     ShadingPoint shading_point() const { return {&w_, point_.uv, scene_.bsdfs.data()}; }
-    void add(const StokesPacket& stokes) { result_ += stokes; }
+    void add(const StokesPacket& stokes, int events) { record_.add(stokes, classes_.path_class(events)); }
 
     float share_of_scattering(float light_pdf) const {
         return last_delta_ || light_pdf <= 0 ? 1.0f : power_heuristic(last_pdf_, light_pdf);
@@ -112,13 +122,15 @@ class PathState {
     }
 
     const Scene& scene_;
+    const LightPathClassifier& classes_;
     const Wavelengths& w_;
     Sampler& sampler_;
+    PathRecord& record_;
     Ray ray_;
     Throughput throughput_;
     Hit hit_;
     SurfacePoint point_;
-    StokesPacket result_{};
+    int events_ = LightPathClassifier::eye;  // what the path has met, as the classifier's state
     Vec3 last_position_ = Vec3::Zero();
     float last_pdf_ = 0, eta_ = 1;
     bool last_delta_ = true, hero_only_ = false;
@@ -126,17 +138,16 @@ class PathState {
 
 }  // namespace
 
-PathResult PathIntegrator::trace(const Scene& scene, const Sensor::CameraRay& camera, const Wavelengths& wavelengths,
-                                 Sampler& sampler) const {
-    PathResult result;
-    PathState path(scene, camera, wavelengths, sampler);
+void PathIntegrator::trace(const TransportProblem& problem, const Sensor::CameraRay& camera,
+                           const Wavelengths& wavelengths, Sampler& sampler, PathRecord& record) const {
+    PathState path(problem, camera, wavelengths, sampler, record);
     for (int depth = 0; settings_.max_depth < 0 || depth < settings_.max_depth; ++depth) {
         sampler.seek(first_draw + draws_per_vertex * static_cast<std::uint32_t>(depth));
         const bool show = depth > 0 || !settings_.hide_emitters;
 
         // Meet a surface, or leave the scene.
         const bool found = path.find_surface();
-        if (depth == 0) result.hit = found;
+        if (depth == 0) record.hit = found;
         if (!found) {
             if (show) path.add_environment();
             break;
@@ -149,8 +160,6 @@ PathResult PathIntegrator::trace(const Scene& scene, const Sensor::CameraRay& ca
         if (!path.scatter() || !path.carries_light()) break;
         if (depth + 1 >= settings_.rr_depth && !path.survives_roulette()) break;
     }
-    result.stokes = path.result();
-    return result;
 }
 
 }  // namespace patina::render

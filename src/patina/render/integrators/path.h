@@ -18,8 +18,8 @@ class PathIntegrator final : public Integrator {
     };
     explicit PathIntegrator(const Settings& settings) : settings_(settings) {}
 
-    PathResult trace(const Scene& scene, const Sensor::CameraRay& camera, const Wavelengths& wavelengths,
-                     Sampler& sampler) const override;
+    void trace(const TransportProblem& problem, const Sensor::CameraRay& camera, const Wavelengths& wavelengths,
+               Sampler& sampler, PathRecord& record) const override;
 
   private:
     Settings settings_;
