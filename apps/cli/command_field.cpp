@@ -16,6 +16,8 @@ struct Options {
     int streams = 0;
     std::string solver = "doubling";
     bool scalar = false;
+    std::int64_t samples = 1'000'000;
+    std::uint64_t seed = 1;
 };
 
 jobs::FieldJob make_job(const Options& options) {
@@ -31,6 +33,8 @@ jobs::FieldJob make_job(const Options& options) {
     job.streams = options.streams;
     job.solver = options.solver;
     job.scalar = options.scalar;
+    job.samples = options.samples;
+    job.seed = options.seed;
     return job;
 }
 
@@ -43,13 +47,16 @@ nlohmann::json matrix_json(const optics::Mueller& m) {
 nlohmann::json to_json(const jobs::FieldJob& job, const jobs::FieldResult& result) {
     const nlohmann::json wavelength = job.wavelength_nm ? nlohmann::json(*job.wavelength_nm) : nlohmann::json(nullptr);
     nlohmann::json radiance = nlohmann::json::array();
-    for (const jobs::FieldValue& value : result.radiance)
+    for (const jobs::FieldValue& value : result.radiance) {
         radiance.push_back({{"tau", value.optical_depth},
                             {"direction", value.upward ? "up" : "down"},
                             {"theta_deg", value.theta_deg},
                             {"phi_deg", value.phi_deg},
                             {"wavelength_nm", wavelength},
                             {"stokes", {value.stokes[0], value.stokes[1], value.stokes[2], value.stokes[3]}}});
+        if (const auto& error = value.standard_error)
+            radiance.back()["standard_error"] = {(*error)[0], (*error)[1], (*error)[2], (*error)[3]};
+    }
     const bool finite = std::isfinite(result.optical_thickness);
     return {{"schema", "patina/field/1"},
             {"radiance", radiance},
@@ -72,7 +79,10 @@ int run(const Options& options, Session& session) {
     console.result("       tau  dir    theta      phi              I              Q              U              V");
     for (const jobs::FieldValue& v : result.radiance)
         console.result(fmt::format("{:10.5g} {:>4} {:8.3f} {:8.3f} {:14.7e} {:14.7e} {:14.7e} {:14.7e}", v.optical_depth, v.upward ? "up" : "down",
-                                   v.theta_deg, v.phi_deg, v.stokes[0], v.stokes[1], v.stokes[2], v.stokes[3]));
+                                   v.theta_deg, v.phi_deg, v.stokes[0], v.stokes[1], v.stokes[2], v.stokes[3]) +
+                       (v.standard_error ? fmt::format("  +- {:.1e} {:.1e} {:.1e} {:.1e}", (*v.standard_error)[0], (*v.standard_error)[1], (*v.standard_error)[2],
+                                                       (*v.standard_error)[3])
+                                         : ""));
     console.document(to_json(job, result));
     return result.diagnostics.converged ? 0 : static_cast<int>(ErrorKind::check);
 }
@@ -90,7 +100,9 @@ void add_field(CLI::App& program, Session& session) {
     command->add_option("--tau", options->tau, "optical depths (default: top upward, bottom downward)");
     command->add_option("--wavelength-nm", options->wavelength, "vacuum wavelength")->check(CLI::PositiveNumber);
     command->add_option("--streams", options->streams, "quadrature nodes per hemisphere (default: chosen)");
-    command->add_option("--solver", options->solver, "doubling | eigenmodes")->capture_default_str();
+    command->add_option("--solver", options->solver, "doubling | eigenmodes | montecarlo")->capture_default_str();
+    command->add_option("--samples", options->samples, "montecarlo: photon packets")->check(CLI::Range(1000LL, 1000000000000LL))->capture_default_str();
+    command->add_option("--seed", options->seed, "montecarlo: seed of the random numbers")->capture_default_str();
     command->add_option("--set", options->settings, "change a key of the recipe: layers.0.thickness_um=30 (repeatable)")->take_all()->allow_extra_args(false);
     command->add_flag("--scalar", options->scalar, "ignore polarization, to see what that costs");
     command->footer("example: patina field examples/siewert_problem_IIA.toml --theta-i-deg 53.1301 --theta-o-deg 0,60 --phi-deg 0,90,180 --tau 0,0.5,1 --json");

@@ -105,7 +105,7 @@ void add_solve(CLI::App& program, Session& session) {
     command->add_option("--tolerance", options->tolerance, "relative accuracy wanted")
         ->check(CLI::Range(1e-8, 0.1))
         ->capture_default_str();
-    command->add_option("--solver", options->solver, "doubling | eigenmodes")->capture_default_str();
+    command->add_option("--solver", options->solver, "doubling | eigenmodes | montecarlo")->capture_default_str();
     command->add_option("--set", options->settings, "change a key of the recipe: layers.0.thickness_um=30 (repeatable)")
         ->take_all()
         ->allow_extra_args(false);

@@ -19,8 +19,8 @@ struct PhysicalCheck {
 };
 
 struct PhysicalCheckOptions {
-    // Violations allowed for rounding and the solver's own tolerance, relative to the values compared; the table's own
-    // error estimate is allowed on top.
+    // Violations allowed for rounding and the solver's own tolerance, relative to the values compared. The laws hold at the
+    // nodes however few there are; energy alone is allowed the table's own error estimate on top.
     double relative_tolerance = 1e-5;
     // Undershoot of f00 allowed between the nodes, relative to the largest f00 for the same incidence.
     double interpolation_tolerance = 1e-2;

@@ -87,6 +87,8 @@ FieldResult field(const coating::Recipe& recipe, const FieldJob& job) {
     rt::SolveOptions options;
     options.streams = chosen_streams(job, problem);
     options.scalar = job.scalar;
+    options.samples = job.samples;
+    options.seed = job.seed;
     const rt::Field computed = solver.field(problem, request, options);
 
     // List the depths in order, without the directions that only exist inside when nothing was asked for inside.
@@ -94,9 +96,11 @@ FieldResult field(const coating::Recipe& recipe, const FieldJob& job) {
         for (const bool upward : {true, false}) {
             if (job.optical_depths.empty() && upward != (d == 0)) continue;
             const auto& hemisphere = upward ? computed.upward[d] : computed.downward[d];
+            const auto& errors = upward ? computed.upward_error : computed.downward_error;
             for (size_t o = 0; o < job.theta_o_deg.size(); ++o)
                 for (size_t p = 0; p < job.phi_deg.size(); ++p)
-                    result.radiance.push_back({request.optical_depths[d], upward, job.theta_o_deg[o], job.phi_deg[p], hemisphere[o][p]});
+                    result.radiance.push_back({request.optical_depths[d], upward, job.theta_o_deg[o], job.phi_deg[p], hemisphere[o][p],
+                                               errors.empty() ? std::nullopt : std::optional(errors[d][o][p])});
         }
     result.specular_surface = rt::specular_surface(problem, request.mu_i);
     result.specular_coherent = rt::specular_coherent(problem, request.mu_i);

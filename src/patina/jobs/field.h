@@ -20,6 +20,8 @@ struct FieldJob {
     int streams = 0;                       // 0 = chosen
     std::string solver = "doubling";
     bool scalar = false;
+    std::int64_t samples = 1'000'000;      // photon packets of a statistical solver
+    std::uint64_t seed = 1;
 };
 
 struct FieldValue {
@@ -27,6 +29,7 @@ struct FieldValue {
     bool upward;
     double theta_deg, phi_deg;
     optics::Stokes stokes;  // diffuse radiance for a beam of flux pi through a plane normal to it
+    std::optional<optics::Stokes> standard_error;  // of a statistical solver
 };
 
 struct FieldResult {
