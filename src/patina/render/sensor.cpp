@@ -60,7 +60,8 @@ bool Sensor::see(const Vec3& point, const Vec2& lens, Sight& sight) const {
     // All lens points see a place of the film at the same point of the plane in focus.
     const Vec3 in_focus = start / focus_distance + towards / towards.z();
     sight.film = {0.5f * (1 - in_focus.x() / tan_half_x), 0.5f * (1 - in_focus.y() / tan_half_y)};
-    if (sight.film.minCoeff() < 0 || sight.film.maxCoeff() >= 1) return false;
+    // A reconstruction filter reaches over the film's edge.
+    if (sight.film.minCoeff() < -0.5f || sight.film.maxCoeff() > 1.5f) return false;
     sight.from = origin + rotation * start;
     sight.distance = towards.norm();
     sight.direction = rotation * (towards / sight.distance);

@@ -9,8 +9,9 @@
 //   f = rho/pi [C1 + cos(phi) C2 tan(beta) + (1 - |cos(phi)|) C3 tan((alpha + beta)/2)]
 //     + 0.17 rho^2/pi sigma^2/(sigma^2 + 0.13) [1 - cos(phi) (2 beta/pi)^2]
 //
-// Reciprocal. A fit to an integral: it loses up to a tenth of a white surface's light, and fits for sigma up to some 40
-// degrees. Black from behind.
+// Reciprocal. A fit to an integral, not energy conserving: facets of reflectance 1 give back 0.95, 0.86 and 0.77 of
+// the light at normal incidence for sigma = 20, 35 and 60 degrees, and at 86 degrees with sigma = 20 they give 1.02,
+// 2 % too much. Black from behind.
 
 #include "patina/render/bsdf.h"
 #include "patina/render/texture.h"

@@ -4,9 +4,9 @@
 //   f = rho_d / pi + rho_s (n + 2) / (2 pi) cos^n(angle between i and the mirror direction of o)
 //
 // Lafortune & Willems (1994), Using the modified Phong reflectance model for physically based rendering, eq. 4:
-// reciprocal, and rho_d + rho_s <= 1 keeps it from giving energy (at normal incidence the lobe reflects rho_s, at
-// grazing incidence half of that or less: what falls below the horizon is lost). An empirical shape: no Fresnel effect,
-// no polarization. Black from behind.
+// reciprocal, and rho_d + rho_s <= 1 keeps it from giving energy. The lobe reflects rho_s at normal incidence and about
+// rho_s cos(theta) elsewhere (0.87, 0.50, 0.12 of rho_s at 30, 60, 85 degrees for n = 30): darker towards grazing,
+// where real surfaces shine. An empirical shape: no Fresnel effect, no polarization. Black from behind.
 
 #include "patina/render/bsdf.h"
 #include "patina/render/texture.h"

@@ -10,8 +10,10 @@
 // of directions; directions are drawn with one of the path's wavelengths at random, and the density is the mean of
 // theirs.
 //
-// Single scattering only: what is scattered twice between facets is lost (a few percent at alpha 0.5), so it is not
-// energy conserving. Reflection is reciprocal, transmission is after division by the square of the index.
+// Single scattering only: what is scattered twice between facets is lost, so it is not energy conserving. Index 1.5,
+// GGX: from outside alpha 0.1, 0.3, 0.5 give back 0.999, 0.989, 0.969 at normal incidence and 0.96, 0.89, 0.79 at 75
+// degrees; from inside, where refraction spreads, 0.99, 0.90, 0.75 at normal incidence. Reflection is reciprocal,
+// transmission is after division by the square of the index.
 
 #include "patina/render/bsdf.h"
 #include "patina/render/microfacet.h"
