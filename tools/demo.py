@@ -16,6 +16,7 @@ BASES = [
 ]
 THICKNESSES_UM = [1, 3, 10, 30, 100]
 WAVELENGTHS = "400:720:20"
+EXPOSURE_EV = 0.3
 
 
 class Demo:
@@ -43,9 +44,12 @@ class Demo:
         sets = [word for setting in settings for word in ("--set", setting)]
         self.run("solve", self.root / "examples" / "paper" / f"{recipe}.toml", "-o", f"{name}.h5",
                  "--wavelengths", WAVELENGTHS, *sets)
-        self.run("render", self.root / "examples" / "demo_scene.xml", "-o", f"{name}.exr", "--spp", self.spp,
+        self.run("render", self.root / "examples" / "demo_scene.xml", "-o", f"{name}.exr", "--no-png", "--spp", self.spp,
                  "-D", f"paint={self.out / name}.h5", "-D", f"knot={self.out / 'knot.ply'}",
                  "-D", f"studio={self.out / 'studio.pfm'}", "-D", f"width={self.width}", "-D", f"height={self.height}")
+        # One exposure and one white (the lights are D65) for all, so that they compare.
+        self.run("image", "tonemap", f"{name}.exr", "-o", f"{name}.png", "--manual-exposure", "--exposure-ev", EXPOSURE_EV,
+                 "--white-balance", "none")
         self.run("image", "dolp", f"{name}.exr", "-o", f"{name}_dolp.png", "--map", "inferno")
         self.run("image", "aolp", f"{name}.exr", "-o", f"{name}_aolp.png")
         self.steps_done += 1
@@ -120,7 +124,8 @@ figcaption { font-size: .85rem; color: #4a515c; padding: .25rem 0; }
 <p>Four pigments in an acrylic binder with a smooth surface, after Collin, Pattanaik, LiKamWa &amp; Bouatouch (2014),
 <i>Computation of polarized subsurface BRDF for rendering</i>. Each coating was computed from refractive indices, particle
 radii, concentration and thickness: Lorenz-Mie scattering, the vector radiative transfer equation, then path tracing with
-full Stokes vectors. Colours are CIE 1931. A degree of polarization of 1 is white; angles of polarization are hues.</p>
+full Stokes vectors. Colours are CIE 1931. Degrees of polarization run from black (0) to pale yellow
+(1); angles of polarization are hues, as bright as the light is polarized.</p>
 {{sections}}
 </body></html>
 """
