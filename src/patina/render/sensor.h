@@ -38,7 +38,7 @@ struct Sensor {
         float importance = 0;  // density per solid angle of ray() for uniform places on the whole film
         Vec3 stokes_axis;      // as ray() gives it
     };
-    // False: the point is not on the film.
+    // False: the point is neither on the film nor within half its size beside it, where filters may reach.
     bool see(const Vec3& point, const Vec2& lens, Sight& sight) const;
     // Density per solid angle of ray() in this direction for uniform places on the whole film (a ray of the camera's).
     float importance(const Vec3& direction) const {
