@@ -24,7 +24,7 @@ TEST_F(Pipeline, TheExampleSolvesChecksInspectsAndPlots) {
     const Outcome check = patina("check a.h5 --json");
     EXPECT_EQ(check.exit_code, 0) << check.out;
     EXPECT_TRUE(json::parse(check.out).at("passed"));
-    EXPECT_THAT(patina("inspect a.h5").out, HasSubstr("DeVore"));  // the publication of the pigment's index
+    EXPECT_THAT(patina("inspect a.h5").out, HasSubstr("Devore. Refractive indices of rutile"));  // each material names its publication
     for (const char* kind : {"lobe", "mueller", "dolp", "spectrum"}) {
         const Outcome plot = patina(std::string("plot a.h5 --kind ") + kind + " -o " + kind + ".svg");
         EXPECT_EQ(plot.exit_code, 0) << plot.err;
@@ -103,8 +103,8 @@ TEST_P(BadScenes, AreRefusedWithAPlaceAndAReason) {
 const BadScene bad_scenes[] = {
     {"Empty", "", "bad.xml"},
     {"Truncated", "<scene version=\"3.0.0\"><shape type=\"sphere\">", "bad.xml:1:"},
-    {"UnknownShape", "<scene version=\"3.0.0\">\n<shape type=\"sfere\"/>\n</scene>", "did you mean \"sphere\"?"},
-    {"UnknownProperty", "<scene version=\"3.0.0\">\n<shape type=\"sphere\">\n<float name=\"radios\" value=\"1\"/>\n</shape>\n</scene>", "did you mean \"radius\"?"},
+    {"UnknownShape", "<scene version=\"3.0.0\"><sensor type=\"perspective\"/>\n<shape type=\"sfere\"/>\n</scene>", "did you mean \"sphere\"?"},
+    {"UnknownProperty", "<scene version=\"3.0.0\"><sensor type=\"perspective\"/>\n<shape type=\"sphere\">\n<float name=\"radios\" value=\"1\"/>\n</shape>\n</scene>", "did you mean \"radius\"?"},
     {"NotANumber", "<scene version=\"3.0.0\">\n<shape type=\"sphere\">\n<float name=\"radius\" value=\"big\"/>\n</shape>\n</scene>", "bad.xml:3:"},
     {"Nan", "<scene version=\"3.0.0\">\n<shape type=\"sphere\">\n<float name=\"radius\" value=\"nan\"/>\n</shape>\n</scene>", "bad.xml:3:"},
     {"MissingMesh", "<scene version=\"3.0.0\">\n<shape type=\"ply\">\n<string name=\"filename\" value=\"no.ply\"/>\n</shape>\n</scene>", "no.ply"},
@@ -112,7 +112,7 @@ const BadScene bad_scenes[] = {
      "<scene version=\"3.0.0\">\n<shape type=\"sphere\"><bsdf type=\"paint\">\n<string name=\"recipe\" value=\"no.toml\"/>\n</bsdf></shape>\n</scene>", "no.toml"},
     {"CyclicInclude", "<scene version=\"3.0.0\">\n<include filename=\"bad.xml\"/>\n</scene>", "bad.xml:2:"},
     {"UnknownReference", "<scene version=\"3.0.0\">\n<shape type=\"sphere\"><ref id=\"gold\"/></shape>\n</scene>", "gold"},
-    {"ZeroRadius", "<scene version=\"3.0.0\">\n<shape type=\"sphere\">\n<float name=\"radius\" value=\"0\"/>\n</shape>\n</scene>", "radius"},
+    {"ZeroRadius", "<scene version=\"3.0.0\"><sensor type=\"perspective\"/>\n<shape type=\"sphere\">\n<float name=\"radius\" value=\"0\"/>\n</shape>\n</scene>", "radius"},
     {"NoSensor", "<scene version=\"3.0.0\">\n<shape type=\"sphere\"/>\n</scene>", "sensor"},
 };
 
