@@ -71,7 +71,8 @@ Interface interface_between(const std::vector<Ray>& rays, const Medium& upper, c
     std::map<int, int> in_lower;
     for (int j = 0; j < lower.size(); ++j) {
         in_lower[lower.rays[j]] = j;
-        result.reflection_below.add(j, j, interface_of_ray(rays[lower.rays[j]], upper.index, lower.index).reflection_below);
+        result.reflection_below.add(j, j,
+                                    interface_of_ray(rays[lower.rays[j]], upper.index, lower.index).reflection_below);
     }
     for (int i = 0; i < upper.size(); ++i) {
         const RayInterface of_ray = interface_of_ray(rays[upper.rays[i]], upper.index, lower.index);
@@ -115,7 +116,8 @@ optics::Mueller coherent_reflection(const Problem& problem, const Ray& ray) {
     using optics::Mueller;
     Mueller below = Mueller::Zero();
     const Layer& last = problem.layers.back();
-    if (problem.top_roughness && problem.refractive_index_above != problem.layers.front().refractive_index) return below;
+    if (problem.top_roughness && problem.refractive_index_above != problem.layers.front().refractive_index)
+        return below;
     if (const auto* metal = std::get_if<MetalBase>(&problem.base); metal && !metal->roughness)
         if (const double mu = ray.cosine_in(last.refractive_index); mu > 0.0)
             below = optics::fresnel_reflection(mu, last.refractive_index, metal->refractive_index);

@@ -79,11 +79,11 @@ struct DegreeFactors {
     Eigen::Matrix2d first;  // the matrix of the first degree
 };
 
-// The sum over l splits: D_l(-u) = (-1)^(l+m) Delta D_l(u) Delta, so that degrees of even l + m reach H only through the
-// (I,Q) part of their expansion matrix and G only through (U,V), and odd ones the other way round: `even` gives the
+// The sum over l splits: D_l(-u) = (-1)^(l+m) Delta D_l(u) Delta, so that degrees of even l + m reach H only through
+// the (I,Q) part of their expansion matrix and G only through (U,V), and odd ones the other way round: `even` gives the
 // factors of P H (with P S_l), else of G P (with S_l P).
-DegreeFactors degree_factors(const WignerTables& d, const optics::ExpansionCoefficients& x, int m, Components components,
-                             bool even) {
+DegreeFactors degree_factors(const WignerTables& d, const optics::ExpansionCoefficients& x, int m,
+                             Components components, bool even) {
     const int order = x.order(), degrees = std::max(order + 1 - m, 0), nc = components.count;
     const int rays = static_cast<int>(d.p.rows());
     const double sign = even ? 1.0 : -1.0;

@@ -1,5 +1,6 @@
 #pragma once
-// Reflection and refraction by a surface of facets, each a smooth Fresnel mirror, as Mueller matrices between directions.
+// Reflection and refraction by a surface of facets, each a smooth Fresnel mirror, as Mueller matrices between
+// directions.
 
 #include <complex>
 
@@ -17,8 +18,8 @@ class Microfacets {
     Microfacets(const RoughSurface& surface, std::complex<double> above, std::complex<double> below)
         : surface_(surface), above_(above), below_(below) {}
 
-    // Radiance out per incident irradiance, 1/sr, divided by n_o/n_i when refracted: so defined, both ways of a path are
-    // reciprocal. `only_mirrors` takes each facet for a perfect mirror.
+    // Radiance out per incident irradiance, 1/sr, divided by n_o/n_i when refracted: so defined, both ways of a path
+    // are reciprocal. `only_mirrors` takes each facet for a perfect mirror.
     optics::Mueller operator()(double cos_i, double cos_o, double phi, bool only_mirrors = false) const;
 
   private:

@@ -20,7 +20,8 @@ struct Side {
 
 std::vector<Side> sides_of(const Medium& upper, const Medium* lower) {
     std::vector<Side> sides;
-    for (int i = 0; i < upper.size(); ++i) sides.push_back({-upper.mu[i], upper.mu[i], upper.scale[i], upper.index, upper.roles[i]});
+    for (int i = 0; i < upper.size(); ++i)
+        sides.push_back({-upper.mu[i], upper.mu[i], upper.scale[i], upper.index, upper.roles[i]});
     if (lower)
         for (int i = 0; i < lower->size(); ++i)
             sides.push_back({lower->mu[i], -lower->mu[i], lower->scale[i], lower->index, lower->roles[i]});
@@ -57,11 +58,13 @@ RoughBoundary::RoughBoundary(const RoughSurface& surface, const Medium& upper, c
     const std::vector<Side> sides = sides_of(upper, lower);
     const Eigen::Index rays = static_cast<Eigen::Index>(sides.size());
     const Microfacets facets(surface, upper.index, metal ? *metal : std::complex<double>(lower->index));
-    // Lobes are about alpha wide in azimuth at middling angles; the trapezoidal rule on half a turn carries half its points.
+    // Lobes are about alpha wide in azimuth at middling angles; the trapezoidal rule on half a turn carries half its
+    // points.
     order_ = std::max(8, std::min(static_cast<int>(std::ceil(8.0 / surface.alpha)), 2 * streams));
     const int points = std::max(128, 4 * order_);
     modes_.assign(order_ + 1, Eigen::MatrixXd::Zero(4 * rays, 4 * rays));
-    Eigen::MatrixXd mirrors = Eigen::MatrixXd::Zero(rays, rays), cosines(points + 1, order_ + 1), sines(points + 1, order_ + 1);
+    Eigen::MatrixXd mirrors = Eigen::MatrixXd::Zero(rays, rays), cosines(points + 1, order_ + 1),
+                    sines(points + 1, order_ + 1);
     for (int p = 0; p <= points; ++p)
         for (int m = 0; m <= order_; ++m) {
             // (1/2pi) int over a turn of an even or odd function.
@@ -124,7 +127,8 @@ Eigen::MatrixXd RoughBoundary::scattering(int m, Components components) const {
     if (m > order_) return result;
     for (int j = 0; j < rays; ++j)
         for (int i = 0; i < rays; ++i)
-            result.block(i * c, j * c, c, c) = modes_[m].block(4 * i + components.first, 4 * j + components.first, c, c);
+            result.block(i * c, j * c, c, c) =
+                modes_[m].block(4 * i + components.first, 4 * j + components.first, c, c);
     return result;
 }
 

@@ -15,8 +15,8 @@ namespace patina::rt {
 class RoughBoundary {
   public:
     // A rough interface between two transparent media, or with `metal` a rough metal under `upper` (no `lower` then).
-    RoughBoundary(const RoughSurface& surface, const Medium& upper, const Medium* lower, std::optional<std::complex<double>> metal,
-                  int streams);
+    RoughBoundary(const RoughSurface& surface, const Medium& upper, const Medium* lower,
+                  std::optional<std::complex<double>> metal, int streams);
 
     int order() const { return order_; }
     // Largest deviation of c^2 from 1 on rays steeper than 60 degrees: how well the rays resolve the lobes.

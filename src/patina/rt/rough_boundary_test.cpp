@@ -34,7 +34,8 @@ double reciprocity_error(const Reflection& r) {
         for (int o = 0; o < n; ++o)
             for (int i = 0; i < n; ++i) {
                 const Mueller a = f.block<4, 4>(4 * o, 4 * i), b = f.block<4, 4>(4 * i, 4 * o);
-                worst = std::max(worst, (a - optics::reversal() * b.transpose() * optics::reversal()).cwiseAbs().maxCoeff());
+                worst = std::max(worst,
+                                 (a - optics::reversal() * b.transpose() * optics::reversal()).cwiseAbs().maxCoeff());
             }
     return worst / r.modes[0].cwiseAbs().maxCoeff();
 }
@@ -45,7 +46,9 @@ const RoughSurface ggx{0.3, FacetDistribution::ggx}, beckmann{0.25, FacetDistrib
 TEST(Microfacets, AreReciprocal) {
     for (const RoughSurface& surface : {ggx, beckmann}) {
         const Microfacets glass(surface, 1.0, 1.5), metal(surface, 1.5, {0.96, 6.69});
-        const auto reversed = [](const Mueller& m) { return Mueller(optics::reversal() * m.transpose() * optics::reversal()); };
+        const auto reversed = [](const Mueller& m) {
+            return Mueller(optics::reversal() * m.transpose() * optics::reversal());
+        };
         for (double phi : {0.4, 2.0}) {
             EXPECT_LT((metal(-0.4, 0.7, phi) - reversed(metal(-0.7, 0.4, -phi))).norm(), 1e-13);
             EXPECT_LT((glass(-0.4, 0.7, phi) - reversed(glass(-0.7, 0.4, -phi))).norm(), 1e-13);
@@ -63,7 +66,8 @@ TEST(Microfacets, ReflectEverythingAsTheSlopesVanish) {
     double total = 0.0;
     for (int o = 0; o < rule.size(); ++o)
         for (int p = 0; p < 800; ++p)
-            total += rule.weights[o] * rule.nodes[o] * mirror(-0.7, rule.nodes[o], 0.4 * (p + 0.5) / 800 - 0.2, true)(0, 0) * 0.4 / 800;
+            total += rule.weights[o] * rule.nodes[o] *
+                     mirror(-0.7, rule.nodes[o], 0.4 * (p + 0.5) / 800 - 0.2, true)(0, 0) * 0.4 / 800;
     // Slopes of 0.02 leave a few of their squares, and the tails beyond the integrated range.
     EXPECT_NEAR(total, 1.0, 2e-3);
 }
@@ -112,18 +116,21 @@ TEST(RoughBoundary, FieldAgreesWithReflection) {
         for (std::size_t m = 0; m < r.modes.size(); ++m) {
             const double c = (m ? 2 : 1) * std::cos(0.7 * m), s = (m ? 2 : 1) * std::sin(0.7 * m);
             const optics::Stokes f = r.modes[m].block<4, 1>(4 * 4, 4 * 6 + column);
-            expected += column < 2 ? optics::Stokes(c * f[0], c * f[1], s * f[2], s * f[3]) : optics::Stokes(-s * f[0], -s * f[1], c * f[2], c * f[3]);
+            expected += column < 2 ? optics::Stokes(c * f[0], c * f[1], s * f[2], s * f[3])
+                                   : optics::Stokes(-s * f[0], -s * f[1], c * f[2], c * f[3]);
         }
         EXPECT_LT((field.upward[0][0][0] - pi * r.mu[6] * expected).cwiseAbs().maxCoeff(), 1e-11);
     }
 }
 
 TEST(RoughBoundary, SaysWhenTheStreamsDoNotResolveTheLobes) {
-    const Problem problem{1.0, {{1.0, 0.9, physical_expansion(1), 1.5}}, BlackBase{}, RoughSurface{0.1, FacetDistribution::ggx}};
+    const Problem problem{
+        1.0, {{1.0, 0.9, physical_expansion(1), 1.5}}, BlackBase{}, RoughSurface{0.1, FacetDistribution::ggx}};
     const SolveOptions few{.streams = 4, .most_fourier_orders = 1}, many{.streams = 32, .most_fourier_orders = 1};
     EXPECT_FALSE(solver_named("doubling").reflection(problem, few).diagnostics.converged);
     EXPECT_TRUE(solver_named("doubling").reflection(problem, many).diagnostics.converged);
-    const Problem impossible{1.0, {{1.0, 0.9, physical_expansion(1), 1.5}}, BlackBase{}, RoughSurface{0.0, FacetDistribution::ggx}};
+    const Problem impossible{
+        1.0, {{1.0, 0.9, physical_expansion(1), 1.5}}, BlackBase{}, RoughSurface{0.0, FacetDistribution::ggx}};
     EXPECT_THROW(validate(impossible), Error);
 }
 

@@ -29,7 +29,9 @@ double through(double a, double b, double thickness) {
 }
 
 // int_0^T exp(-t (a+b)) dt: light scattered out of the side it came in.
-double back(double a, double b, double thickness) { return -std::expm1(-thickness * (a + b)) / (a + b); }
+double back(double a, double b, double thickness) {
+    return -std::expm1(-thickness * (a + b)) / (a + b);
+}
 
 }  // namespace
 
@@ -49,8 +51,7 @@ RayPath::RayPath(const Problem& problem, const std::vector<Slab>& slabs, const R
     // Add slabs and interfaces from the base upwards.
     Mueller reflection = Mueller::Zero();
     const double lowest = problem.layers.back().refractive_index;
-    if (const double mu = ray.cosine_in(lowest); mu > 0.0)
-        reflection = mask(smooth_mirror(problem.base, mu, lowest));
+    if (const double mu = ray.cosine_in(lowest); mu > 0.0) reflection = mask(smooth_mirror(problem.base, mu, lowest));
     for (std::size_t p = count; p-- > 0;) {
         const int k = slabs[p].layer;
         const double n = problem.layers[k].refractive_index, mu = ray.cosine_in(n);
@@ -58,9 +59,12 @@ RayPath::RayPath(const Problem& problem, const std::vector<Slab>& slabs, const R
         bottom_[p] = reflection;
         below_[p] = attenuation_[p] * attenuation_[p] * reflection;
         const bool starts_layer = p == 0 || slabs[p - 1].layer != k;
-        const double above = !starts_layer ? n : k > 0 ? problem.layers[k - 1].refractive_index : problem.refractive_index_above;
+        const double above = !starts_layer ? n
+                             : k > 0       ? problem.layers[k - 1].refractive_index
+                                           : problem.refractive_index_above;
         const RayInterface interface = interface_of_ray(ray, above, n);
-        tops_[p] = {mask(interface.reflection_below), mask(interface.transmission_down), mask(interface.transmission_up)};
+        tops_[p] = {mask(interface.reflection_below), mask(interface.transmission_down),
+                    mask(interface.transmission_up)};
         reflection = mask(interface.reflection_above) + tops_[p].transmission_up * below_[p] * downward(p);
     }
 }
@@ -108,7 +112,8 @@ RayLevels RayPath::lit_by(const RayLevels& emission) const {
     return levels;
 }
 
-SingleScattering::SingleScattering(const StackMedia& media, const Truncation& truncation, std::vector<Slab> slabs, bool scalar)
+SingleScattering::SingleScattering(const StackMedia& media, const Truncation& truncation, std::vector<Slab> slabs,
+                                   bool scalar)
     : media_(media), truncation_(truncation), slabs_(std::move(slabs)), scalar_(scalar) {
     if (order() == 0) return;
     for (const Ray& ray : media_.rays) {
@@ -124,7 +129,8 @@ void SingleScattering::add_reflection(int m, Eigen::MatrixXd& reflection) const 
         if (m > lacking.order() || slabs_[p].optical_thickness == 0.0) continue;
 
         // Of the slab's rays those that reach the medium above, by their position there.
-        Medium seen{media_.layers[k].index, {}, Eigen::VectorXd(media_.above.size()), Eigen::VectorXd(media_.above.size()), {}};
+        Medium seen{
+            media_.layers[k].index, {}, Eigen::VectorXd(media_.above.size()), Eigen::VectorXd(media_.above.size()), {}};
         std::vector<int> place;
         for (int a = 0; a < media_.above.size(); ++a) {
             const Ray& ray = media_.rays[media_.above.rays[a]];
@@ -144,13 +150,15 @@ void SingleScattering::add_reflection(int m, Eigen::MatrixXd& reflection) const 
             const Mueller &down = lights_[seen.rays[j]].down[p], &up = lights_[seen.rays[j]].up[p];
             for (Eigen::Index i = 0; i < count; ++i) {
                 const double a = 1.0 / seen.mu[i], b = 1.0 / seen.mu[j];
-                const double same = through(a, b, slabs_[p].optical_thickness), turned = back(a, b, slabs_[p].optical_thickness);
+                const double same = through(a, b, slabs_[p].optical_thickness),
+                             turned = back(a, b, slabs_[p].optical_thickness);
                 const Mueller forward = same * sums.same.block<4, 4>(4 * i, 4 * j);
                 const Mueller backward = turned * sums.opposite.block<4, 4>(4 * i, 4 * j);
                 // By reciprocity light leaves the stack as it would come in.
                 const RayLight& out = lights_[seen.rays[i]];
                 reflection.block<4, 4>(4 * place[i], 4 * place[j]) +=
-                    reversed(out.down[p]) * (backward * down + forward * up) + reversed(out.up[p]) * (forward * down + backward * up);
+                    reversed(out.down[p]) * (backward * down + forward * up) +
+                    reversed(out.up[p]) * (forward * down + backward * up);
             }
         }
     }

@@ -7,7 +7,8 @@
 
 namespace patina::rt {
 
-StackMedia::StackMedia(const Problem& p, std::vector<Ray> all_rays, int streams) : problem(p), rays(std::move(all_rays)) {
+StackMedia::StackMedia(const Problem& p, std::vector<Ray> all_rays, int streams)
+    : problem(p), rays(std::move(all_rays)) {
     above = medium_of(rays, problem.refractive_index_above);
     for (const Layer& layer : problem.layers) layers.push_back(medium_of(rays, layer.refractive_index));
     for (std::size_t k = 0; k < layers.size(); ++k) {
@@ -78,11 +79,12 @@ void report_quadrature(const StackMedia& media, Diagnostics& diagnostics) {
             "layer {}: {} streams integrate its phase function (order {}) with an error of {:.1e}; take more", k,
             diagnostics.streams, media.problem.layers[k].expansion.order(), error));
     }
-    for (const auto& [what, boundary] : {std::pair{"interface", &media.rough_top}, std::pair{"base", &media.rough_base}}) {
+    for (const auto& [what, boundary] :
+         {std::pair{"interface", &media.rough_top}, std::pair{"base", &media.rough_base}}) {
         if (!*boundary || (*boundary)->correction() < unresolved) continue;
         diagnostics.converged = false;
-        diagnostics.notes.push_back(fmt::format("{}: {} streams miss {:.0f} % of its rough reflection; take more", what, diagnostics.streams,
-                                                100.0 * (*boundary)->correction()));
+        diagnostics.notes.push_back(fmt::format("{}: {} streams miss {:.0f} % of its rough reflection; take more", what,
+                                                diagnostics.streams, 100.0 * (*boundary)->correction()));
     }
 }
 

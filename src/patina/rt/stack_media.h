@@ -24,7 +24,9 @@ struct StackMedia {
     // The interface on top of layer k over what reflects `below`; there must be one.
     Added add_interface_of(int k, int m, Components components, const Eigen::MatrixXd& below) const;
     // A layer that scatters nothing at order m, in closed form.
-    bool scatters(int k, int m) const { return m <= problem.layers[k].expansion.order() && problem.layers[k].single_scattering_albedo > 0.0; }
+    bool scatters(int k, int m) const {
+        return m <= problem.layers[k].expansion.order() && problem.layers[k].single_scattering_albedo > 0.0;
+    }
     LayerOperators<double> clear_layer(int k, double optical_thickness, Components components) const;
 
     const Problem& problem;
@@ -34,7 +36,7 @@ struct StackMedia {
     std::deque<LayerKernel> kernels;             // of each layer
     std::vector<std::optional<Interface>> tops;  // of each layer; nothing where the indices match
     std::optional<RoughBoundary> rough_top, rough_base;
-    int order = 0;                               // the highest Fourier order that scattering or a rough surface can excite
+    int order = 0;  // the highest Fourier order that scattering or a rough surface can excite
 };
 
 // The groups of Stokes components that are solved together at order m.

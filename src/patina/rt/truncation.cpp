@@ -11,7 +11,7 @@ namespace {
 
 using optics::ExpansionCoefficients;
 
-constexpr std::vector<double> ExpansionCoefficients::* all_coefficients[] = {
+constexpr std::vector<double> ExpansionCoefficients::*all_coefficients[] = {
     &ExpansionCoefficients::alpha1, &ExpansionCoefficients::alpha2, &ExpansionCoefficients::alpha3,
     &ExpansionCoefficients::alpha4, &ExpansionCoefficients::beta1,  &ExpansionCoefficients::beta2};
 
@@ -68,7 +68,8 @@ Truncation truncate(const Problem& problem, int streams) {
         if (layer.single_scattering_albedo < 1.0) layer.single_scattering_albedo = single * (1.0 - f);
         result.forward[k] = f;
         // No single path leads through a rough interface.
-        if (problem.top_roughness && problem.refractive_index_above != problem.layers.front().refractive_index) continue;
+        if (problem.top_roughness && problem.refractive_index_above != problem.layers.front().refractive_index)
+            continue;
 
         result.order = std::max(result.order, whole.order());
         result.lacking[k] = whole;
@@ -85,8 +86,9 @@ Truncation truncate(const Problem& problem, int streams) {
 void report_truncation(const Truncation& truncation, Diagnostics& diagnostics) {
     for (std::size_t k = 0; k < truncation.forward.size(); ++k)
         if (truncation.forward[k] > 0.0)
-            diagnostics.notes.push_back(fmt::format("layer {}: {:.2g} of its scattering, the forward peak, counts as unscattered (delta-M, {} terms)",
-                                                    k, truncation.forward[k], truncation.scaled.layers[k].expansion.order() + 1));
+            diagnostics.notes.push_back(fmt::format(
+                "layer {}: {:.2g} of its scattering, the forward peak, counts as unscattered (delta-M, {} terms)", k,
+                truncation.forward[k], truncation.scaled.layers[k].expansion.order() + 1));
 }
 
 }  // namespace patina::rt

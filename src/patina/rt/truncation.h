@@ -14,8 +14,9 @@ namespace patina::rt {
 struct Truncation {
     Problem scaled;               // what remains
     std::vector<double> forward;  // f of each layer, 0 where nothing is truncated
-    // Of each truncated layer omega/(1 - omega f) S_l less the scaled omega S_l: what single scattering lacks per scaled
-    // optical depth (TMS; Nakajima & Tanaka 1988, J. Quant. Spectrosc. Radiat. Transf. 40, 51, eq. 14). Else empty.
+    // Of each truncated layer omega/(1 - omega f) S_l less the scaled omega S_l: what single scattering lacks per
+    // scaled optical depth (TMS; Nakajima & Tanaka 1988, J. Quant. Spectrosc. Radiat. Transf. 40, 51, eq. 14). Else
+    // empty.
     std::vector<optics::ExpansionCoefficients> lacking;
     int order = 0;  // of the longest of `lacking`; 0 when nothing is truncated
 

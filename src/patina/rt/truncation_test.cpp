@@ -33,7 +33,9 @@ optics::ExpansionCoefficients peaked(double g, int order) {
     return x;
 }
 
-Problem coarse(double index, Base base) { return {1.0, {{1.2, 0.97, peaked(0.75, 48), index}}, base}; }
+Problem coarse(double index, Base base) {
+    return {1.0, {{1.2, 0.97, peaked(0.75, 48), index}}, base};
+}
 
 double largest_error(const Field& a, const Field& b) {
     double worst = 0.0;
@@ -90,9 +92,10 @@ TEST(Truncation, AgreesWithManyStreams) {
 
 // The reflection's correction rests on reciprocity, the field's on adding upwards: the same light.
 TEST(Truncation, CorrectsFieldAndReflectionAlike) {
-    const Problem problem{1.0,
-                          {{0.4, 0.97, peaked(0.8, 40), 1.5}, {0.0, 0.5, physical_expansion(1), 1.5}, {0.7, 1.0, peaked(0.7, 30), 1.35}},
-                          MetalBase{{0.96, 6.69}}};
+    const Problem problem{
+        1.0,
+        {{0.4, 0.97, peaked(0.8, 40), 1.5}, {0.0, 0.5, physical_expansion(1), 1.5}, {0.7, 1.0, peaked(0.7, 30), 1.35}},
+        MetalBase{{0.96, 6.69}}};
     const SolveOptions options{.streams = 6, .fourier_tolerance = 0.0};
     const Reflection r = solver_named("doubling").reflection(problem, options);
     EXPECT_EQ(r.modes.size(), 41u);
@@ -105,7 +108,8 @@ TEST(Truncation, CorrectsFieldAndReflectionAlike) {
             for (std::size_t m = 0; m < r.modes.size(); ++m) {
                 const double c = (m ? 2 : 1) * std::cos(0.7 * m), s = (m ? 2 : 1) * std::sin(0.7 * m);
                 const optics::Stokes f = r.modes[m].block<4, 1>(4 * o, 4 * 3 + column);
-                expected += column < 2 ? optics::Stokes(c * f[0], c * f[1], s * f[2], s * f[3]) : optics::Stokes(-s * f[0], -s * f[1], c * f[2], c * f[3]);
+                expected += column < 2 ? optics::Stokes(c * f[0], c * f[1], s * f[2], s * f[3])
+                                       : optics::Stokes(-s * f[0], -s * f[1], c * f[2], c * f[3]);
             }
             // Rounding; radiances are of the order of 1.
             EXPECT_LT((field.upward[0][view][0] - pi * r.mu[3] * expected).cwiseAbs().maxCoeff(), 1e-11);
