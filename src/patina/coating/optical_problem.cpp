@@ -77,7 +77,7 @@ class ProblemBuilder {
 
     rt::Base base_of(const NoBase&) { return rt::BlackBase{}; }
     rt::Base base_of(const LambertianBase& base) { return rt::LambertianBase{base.reflectance(wavelength_nm_)}; }
-    rt::Base base_of(const MetalBase& base) { return rt::MetalBase{index_of(base.material)}; }
+    rt::Base base_of(const MetalBase& base) { return rt::MetalBase{index_of(base.material), base.roughness}; }
 
     std::complex<double> index_of(const OpticalConstants& material) {
         if (!material.covers(wavelength_nm_) && recipe_.extrapolation == optics::Extrapolation::hold)

@@ -11,6 +11,7 @@
 #include "patina/optics/refractive_index.h"
 #include "patina/optics/scattering/expansion_coefficients.h"
 #include "patina/optics/scattering/size_distribution.h"
+#include "patina/rt/problem.h"
 #include "patina/spectral/spectrum.h"
 
 namespace patina::coating {
@@ -52,13 +53,14 @@ struct LambertianBase {
 };
 struct MetalBase {
     optics::OpticalConstants material;
+    std::optional<rt::RoughSurface> roughness;  // a mirror without
 };
 
 struct Recipe {
     std::string title;
     optics::Extrapolation extrapolation = optics::Extrapolation::refuse;
-    bool has_interface = false;  // a smooth Fresnel interface to air on top; else the top is index matched
-    std::vector<RecipeLayer> layers;  // top to bottom, at least one
+    bool has_interface = false;  // a Fresnel interface to air on top; else the top is index matched
+    std::vector<RecipeLayer> layers;  // top to bottom, at least one; those of a base recipe are the last
     std::variant<NoBase, LambertianBase, MetalBase> base;
     std::string text;  // as read, after --set, for provenance
     std::string path;

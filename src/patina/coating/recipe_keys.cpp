@@ -64,9 +64,12 @@ constexpr std::array size_keys{
 };
 
 constexpr std::array base_keys{
-    KeyInfo{"type", text, "", "none", "\"none\" | \"lambertian\" | \"metal\""},
+    KeyInfo{"type", text, "", "none", "\"none\" | \"lambertian\" | \"metal\" | \"recipe\""},
     KeyInfo{"reflectance", number, "1", "", "lambertian: 0 to 1, or a spectrum file (.spd, .csv)", 0.0, 1.0},
     KeyInfo{"material", text, "", "", "metal: a built-in material, an n,k file, or { n = 1.0, k = 6.6 }"},
+    KeyInfo{"alpha", number, "1", "", "metal: width of the slopes of a rough surface's facets; omit for a mirror", 0.04, 1.0},
+    KeyInfo{"distribution", text, "", "ggx", "metal with alpha: \"ggx\" | \"beckmann\": of the facets' slopes"},
+    KeyInfo{"recipe", text, "", "", "recipe: file of another coating, whose layers and base lie below this one's layers"},
 };
 
 constexpr std::array tables{

@@ -15,14 +15,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int most_layers = 1000;
+constexpr std::size_t most_layers = 1000;
+constexpr int most_nested_recipes = 8;
+constexpr std::uint64_t largest_recipe = std::uint64_t{16} << 20;
 constexpr double densest_packing = 0.74;  // of equal spheres; more cannot be meant
 
 // Where the recipe's own files are looked for, and how it is named in messages.
 struct Context {
     std::string file;
     fs::path folder;
+    int depth = 0;  // how many recipes lie on this one
 };
+
+Recipe read_recipe_at(const fs::path& path, int depth);
 
 // A material given by name, by file, or as { n, k }; `key` must be present.
 optics::OpticalConstants read_material(const TableReader& reader, std::string_view key, const Context& context) {
@@ -110,22 +115,57 @@ spectral::Spectrum read_reflectance(const TableReader& reader, const Context& co
     return spectrum;
 }
 
-std::variant<NoBase, LambertianBase, MetalBase> read_base(const toml::table* table, const Context& context) {
-    if (!table) return NoBase{};
-    const TableReader reader(*table, recipe_keys("[base]"), "base", context.file);
-    static constexpr std::string_view material_key[] = {"material"}, reflectance_key[] = {"reflectance"};
-    const std::string type = reader.choice("type", {"none", "lambertian", "metal"});
-    if (type != "metal") reader.forbid(material_key, "only a metal base has a material");
-    if (type != "lambertian") reader.forbid(reflectance_key, "only a lambertian base has a reflectance");
-    if (type == "metal") return MetalBase{read_material(reader, "material", context)};
-    if (type == "lambertian") return LambertianBase{read_reflectance(reader, context)};
-    return NoBase{};
+// The facets of a table with the keys alpha and distribution; alpha must be present.
+rt::RoughSurface read_roughness(const TableReader& reader) {
+    const double alpha = reader.number("alpha");
+    const bool ggx = reader.choice("distribution", {"ggx", "beckmann"}) == "ggx";
+    return {alpha, ggx ? rt::FacetDistribution::ggx : rt::FacetDistribution::beckmann};
 }
 
-bool read_interface(const toml::table* table, const Context& context) {
-    if (!table) return false;
+// Appends the layers of another recipe, and takes its base.
+void append_recipe(const TableReader& reader, const Context& context, Recipe& recipe) {
+    const fs::path file = context.folder / reader.text("recipe");
+    if (!fs::exists(file)) throw input_error(reader.where("recipe"), fmt::format("{}: file not found", file.string()));
+    if (context.depth >= most_nested_recipes)
+        throw input_error(reader.where("recipe"), fmt::format("{} recipes lie on each other", most_nested_recipes + 1), "does one lie on itself?");
+    const Recipe below = read_recipe_at(file, context.depth + 1);
+    for (const RecipeLayer& layer : recipe.layers)
+        if (const auto* optical = std::get_if<OpticalLayer>(&layer.content); optical && std::isinf(optical->optical_thickness))
+            throw input_error(reader.where("recipe"), "an infinite layer hides what lies below it", "", "leave the base out");
+    recipe.layers.insert(recipe.layers.end(), below.layers.begin(), below.layers.end());
+    recipe.base = below.base;
+    if (recipe.layers.size() > most_layers)
+        throw input_error(reader.where("recipe"), fmt::format("{} layers", recipe.layers.size()), fmt::format("at most {} make sense", most_layers));
+
+    // Keep what was read, for provenance.
+    std::istringstream lines(below.text);
+    recipe.text += fmt::format("\n# base.recipe, {}:\n", file.filename().string());
+    for (std::string line; std::getline(lines, line);) recipe.text += "# " + line + "\n";
+}
+
+void read_base(const toml::table* table, const Context& context, Recipe& recipe) {
+    if (!table) return;
+    const TableReader reader(*table, recipe_keys("[base]"), "base", context.file);
+    static constexpr std::string_view metal_keys[] = {"material", "alpha", "distribution"}, reflectance_key[] = {"reflectance"}, recipe_key[] = {"recipe"};
+    static constexpr std::string_view distribution_key[] = {"distribution"};
+    const std::string type = reader.choice("type", {"none", "lambertian", "metal", "recipe"});
+    if (type != "metal") reader.forbid(metal_keys, "only a metal base has a material and facets");
+    if (type != "lambertian") reader.forbid(reflectance_key, "only a lambertian base has a reflectance");
+    if (type != "recipe") reader.forbid(recipe_key, "only a base of type \"recipe\" has one");
+    if (type == "metal") {
+        if (!reader.has("alpha")) reader.forbid(distribution_key, "a metal base without alpha is a mirror");
+        MetalBase metal{read_material(reader, "material", context), {}};
+        if (reader.has("alpha")) metal.roughness = read_roughness(reader);
+        recipe.base = std::move(metal);
+    }
+    if (type == "lambertian") recipe.base = LambertianBase{read_reflectance(reader, context)};
+    if (type == "recipe") append_recipe(reader, context, recipe);
+}
+
+void read_interface(const toml::table* table, const Context& context, Recipe& recipe) {
+    if (!table) return;
     const TableReader reader(*table, recipe_keys("[interface]"), "interface", context.file);
-    return reader.choice("type", {"smooth"}) == "smooth";
+    recipe.has_interface = reader.choice("type", {"smooth"}) == "smooth";
 }
 
 toml::table parse_toml(const std::string& text, const std::string& name) {
@@ -174,19 +214,17 @@ void assign(toml::table& root, const std::string& setting) {
     }
 }
 
-}  // namespace
-
-Recipe parse_recipe(const std::string& text, const std::string& name, const fs::path& folder, const std::vector<std::string>& settings) {
+Recipe parse(const std::string& text, const Context& context, const std::vector<std::string>& settings) {
+    const std::string& name = context.file;
     toml::table root = parse_toml(text, name);
     for (const std::string& setting : settings) assign(root, setting);
 
-    const Context context{name, folder};
     const TableReader reader(root, recipe_keys(""), "", name);
     Recipe recipe;
     recipe.path = name;
     recipe.title = reader.optional_text("title").value_or("");
     recipe.extrapolation = reader.choice("extrapolation", {"refuse", "hold"}) == "hold" ? optics::Extrapolation::hold : optics::Extrapolation::refuse;
-    recipe.has_interface = read_interface(reader.table("interface"), context);
+    read_interface(reader.table("interface"), context, recipe);
 
     const std::vector<const toml::table*> layers = reader.tables("layers");
     if (layers.empty()) throw input_error(SourceLocation{name}, "a recipe needs at least one [[layers]]", "", "patina new paint NAME writes a commented starter");
@@ -197,16 +235,25 @@ Recipe parse_recipe(const std::string& text, const std::string& name, const fs::
         for (RecipeLayer& layer : recipe.layers)
             if (Composition* composition = std::get_if<Composition>(&layer.content); composition && !composition->volume_solids)
                 composition->volume_solids = volume_solids;
-    recipe.base = read_base(reader.table("base"), context);
 
     std::ostringstream written;
     written << root;
     recipe.text = settings.empty() ? text : written.str();
+    read_base(reader.table("base"), context, recipe);
     return recipe;
 }
 
+Recipe read_recipe_at(const fs::path& path, int depth) {
+    return parse(read_text_file(path, largest_recipe), {path.string(), path.parent_path(), depth}, {});
+}
+
+}  // namespace
+
+Recipe parse_recipe(const std::string& text, const std::string& name, const fs::path& folder, const std::vector<std::string>& settings) {
+    return parse(text, {name, folder}, settings);
+}
+
 Recipe read_recipe(const fs::path& path, const std::vector<std::string>& settings) {
-    constexpr std::uint64_t largest_recipe = std::uint64_t{16} << 20;
     return parse_recipe(read_text_file(path, largest_recipe), path.string(), path.parent_path(), settings);
 }
 

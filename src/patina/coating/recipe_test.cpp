@@ -120,5 +120,45 @@ size = { distribution = "mono", radius_um = 0.1 }
     EXPECT_THAT(held.notes, ::testing::Contains(HasSubstr("held outside")));
 }
 
+TEST(Recipe, ReadsARoughMetal) {
+    const Recipe recipe = parse_recipe("[[layers]]\nthickness_um = 10\nbinder = { n = 1.5 }\n"
+                                       "[base]\ntype = \"metal\"\nmaterial = { n = 1, k = 6 }\nalpha = 0.3\ndistribution = \"beckmann\"\n", "r.toml", ".");
+    const rt::Problem problem = optical_problem(recipe, 550.0).problem;
+    EXPECT_EQ(std::get<rt::MetalBase>(problem.base).roughness->alpha, 0.3);
+    EXPECT_EQ(std::get<rt::MetalBase>(problem.base).roughness->distribution, rt::FacetDistribution::beckmann);
+}
+
+TEST(Recipe, RoughSurfacesThatCannotBeAreErrors) {
+    const auto message = [](const std::string& tables) -> std::string {
+        try {
+            parse_recipe("[[layers]]\nthickness_um = 10\nbinder = { n = 1.5 }\n" + tables, "r.toml", ".");
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    const std::string metal = "[base]\ntype = \"metal\"\nmaterial = { n = 1, k = 6 }\n";
+    EXPECT_THAT(message(metal + "alpha = 0.01"), HasSubstr("0.04"));
+    EXPECT_THAT(message(metal + "distribution = \"ggx\""), HasSubstr("mirror"));
+    EXPECT_THAT(message("[interface]\ntype = \"rough\""), HasSubstr("rough"));
+}
+
+// A coating on another recipe is the coating with all the layers.
+TEST(Recipe, LiesOnAnotherRecipe) {
+    const std::filesystem::path folder = ::testing::TempDir();
+    std::ofstream(folder / "below.toml") << two_layers;
+    std::ofstream(folder / "self.toml") << "[[layers]]\nthickness_um = 10\nbinder = { n = 1.5 }\n[base]\ntype = \"recipe\"\nrecipe = \"self.toml\"\n";
+    const std::string top = "[interface]\ntype = \"smooth\"\n[[layers]]\nthickness_um = 10\nbinder = { n = 1.6 }\n[base]\ntype = \"recipe\"\nrecipe = \"below.toml\"\n";
+    const Recipe recipe = parse_recipe(top, "r.toml", folder);
+    ASSERT_EQ(recipe.layers.size(), 3u);
+    EXPECT_EQ(std::get<LambertianBase>(recipe.base).reflectance(500.0), 0.25);
+    const rt::Problem problem = optical_problem(recipe, 550.0).problem;
+    EXPECT_EQ(problem.layers[0].refractive_index, 1.6);
+    EXPECT_EQ(problem.layers[2].refractive_index, 1.45);
+    EXPECT_NO_THROW(parse_recipe(recipe.text, "again", folder));
+    EXPECT_THROW(read_recipe(folder / "self.toml"), Error);
+    EXPECT_THROW(parse_recipe(top, "r.toml", folder / "nowhere"), Error);
+}
+
 }  // namespace
 }  // namespace patina::coating

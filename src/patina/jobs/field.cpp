@@ -63,7 +63,8 @@ int chosen_streams(const FieldJob& job, const rt::Problem& problem) {
     }
     int order = 0;
     for (const rt::Layer& layer : problem.layers) order = std::max(order, layer.expansion.order());
-    return std::clamp(order / 2 + 8, 32, 160);
+    // Longer phase functions are truncated, with exact single scattering.
+    return std::clamp(order / 2 + 8, 32, 72);
 }
 
 }  // namespace

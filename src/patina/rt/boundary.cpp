@@ -46,36 +46,54 @@ constexpr double total_reflection = 1.0 - 1e-14;
 
 }  // namespace
 
-Interface interface_between(const Medium& upper, const Medium& lower) {
-    Interface result{{upper.size(), upper.size()},
-                     {lower.size(), lower.size()},
-                     {lower.size(), upper.size()},
-                     {upper.size(), lower.size()}};
-    std::map<int, int> in_lower, in_upper;
-    for (int i = 0; i < lower.size(); ++i) in_lower[lower.rays[i]] = i;
-    for (int i = 0; i < upper.size(); ++i) in_upper[upper.rays[i]] = i;
-
-    for (int i = 0; i < upper.size(); ++i) {
-        const auto found = in_lower.find(upper.rays[i]);
-        const double kept = found == in_lower.end() ? total_reflection : 1.0;
-        result.reflection_above.add(i, i,
-                                    kept * turned(optics::fresnel_reflection(upper.mu[i], upper.index, lower.index)));
-        if (found == in_lower.end()) continue;
-        const int j = found->second;
-        result.transmission_down.add(j, i, optics::fresnel_transmission(upper.mu[i], upper.index, lower.index));
-        result.transmission_up.add(i, j, optics::fresnel_transmission(lower.mu[j], lower.index, upper.index));
+RayInterface interface_of_ray(const Ray& ray, double upper, double lower) {
+    const double mu_upper = ray.cosine_in(upper), mu_lower = ray.cosine_in(lower);
+    RayInterface result;
+    if (upper == lower) {
+        result.transmission_down = result.transmission_up = optics::Mueller::Identity();
+        return result;
     }
-    for (int j = 0; j < lower.size(); ++j) {
-        const double kept = in_upper.contains(lower.rays[j]) ? 1.0 : total_reflection;
-        result.reflection_below.add(j, j,
-                                    kept * turned(optics::fresnel_reflection(lower.mu[j], lower.index, upper.index)));
+    const double kept = mu_upper > 0.0 && mu_lower > 0.0 ? 1.0 : total_reflection;
+    if (mu_upper > 0.0) result.reflection_above = kept * turned(optics::fresnel_reflection(mu_upper, upper, lower));
+    if (mu_lower > 0.0) result.reflection_below = kept * turned(optics::fresnel_reflection(mu_lower, lower, upper));
+    if (mu_upper > 0.0 && mu_lower > 0.0) {
+        result.transmission_down = optics::fresnel_transmission(mu_upper, upper, lower);
+        result.transmission_up = optics::fresnel_transmission(mu_lower, lower, upper);
     }
     return result;
 }
 
+Interface interface_between(const std::vector<Ray>& rays, const Medium& upper, const Medium& lower) {
+    Interface result{{upper.size(), upper.size()},
+                     {lower.size(), lower.size()},
+                     {lower.size(), upper.size()},
+                     {upper.size(), lower.size()}};
+    std::map<int, int> in_lower;
+    for (int j = 0; j < lower.size(); ++j) {
+        in_lower[lower.rays[j]] = j;
+        result.reflection_below.add(j, j,
+                                    interface_of_ray(rays[lower.rays[j]], upper.index, lower.index).reflection_below);
+    }
+    for (int i = 0; i < upper.size(); ++i) {
+        const RayInterface of_ray = interface_of_ray(rays[upper.rays[i]], upper.index, lower.index);
+        result.reflection_above.add(i, i, of_ray.reflection_above);
+        const auto found = in_lower.find(upper.rays[i]);
+        if (found == in_lower.end()) continue;
+        result.transmission_down.add(found->second, i, of_ray.transmission_down);
+        result.transmission_up.add(i, found->second, of_ray.transmission_up);
+    }
+    return result;
+}
+
+optics::Mueller smooth_mirror(const Base& base, double mu, double index) {
+    const auto* metal = std::get_if<MetalBase>(&base);
+    if (!metal || metal->roughness) return optics::Mueller::Zero();
+    return turned(optics::fresnel_reflection(mu, index, metal->refractive_index));
+}
+
 std::optional<RayMatrix> mirror(const Base& base, const Medium& medium) {
     const auto* metal = std::get_if<MetalBase>(&base);
-    if (!metal) return std::nullopt;
+    if (!metal || metal->roughness) return std::nullopt;
     RayMatrix result(medium.size(), medium.size());
     for (int i = 0; i < medium.size(); ++i)
         result.add(i, i, turned(optics::fresnel_reflection(medium.mu[i], medium.index, metal->refractive_index)));
@@ -98,7 +116,9 @@ optics::Mueller coherent_reflection(const Problem& problem, const Ray& ray) {
     using optics::Mueller;
     Mueller below = Mueller::Zero();
     const Layer& last = problem.layers.back();
-    if (const auto* metal = std::get_if<MetalBase>(&problem.base))
+    if (problem.top_roughness && problem.refractive_index_above != problem.layers.front().refractive_index)
+        return below;
+    if (const auto* metal = std::get_if<MetalBase>(&problem.base); metal && !metal->roughness)
         if (const double mu = ray.cosine_in(last.refractive_index); mu > 0.0)
             below = optics::fresnel_reflection(mu, last.refractive_index, metal->refractive_index);
 

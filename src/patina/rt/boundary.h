@@ -41,7 +41,16 @@ struct Interface {
     RayMatrix reflection_above, reflection_below;  // seen from above, from below
     RayMatrix transmission_down, transmission_up;
 };
-Interface interface_between(const Medium& upper, const Medium& lower);
+Interface interface_between(const std::vector<Ray>& rays, const Medium& upper, const Medium& lower);
+
+// The same for one ray: zero where the ray does not exist, and no interface where the indices are equal.
+struct RayInterface {
+    optics::Mueller reflection_above = optics::Mueller::Zero(), reflection_below = optics::Mueller::Zero();
+    optics::Mueller transmission_down = optics::Mueller::Zero(), transmission_up = optics::Mueller::Zero();
+};
+RayInterface interface_of_ray(const Ray& ray, double upper, double lower);
+// Reflection of a smooth metal base at cosine mu in the medium of `index`; zero for other bases.
+optics::Mueller smooth_mirror(const Base& base, double mu, double index);
 
 // Reflection of a metal base, ray by ray; nothing for other bases.
 std::optional<RayMatrix> mirror(const Base& base, const Medium& medium);

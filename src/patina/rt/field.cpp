@@ -7,9 +7,11 @@
 #include <fmt/format.h>
 
 #include "patina/core/constants.h"
+#include "patina/core/contract.h"
 #include "patina/core/error.h"
 #include "patina/core/parallel.h"
 #include "patina/rt/adding.h"
+#include "patina/rt/single_scattering.h"
 #include "patina/rt/stack.h"
 #include "patina/rt/stack_media.h"
 
@@ -44,46 +46,6 @@ void validate_request(const Problem& problem, const FieldRequest& request) {
     }
 }
 
-// A part of a layer between two levels. Level p lies at the top of slab p; level 0 below the top interface, the others
-// at the bottom of slab p-1, above an interface that may be there.
-struct Slab {
-    int layer;
-    double optical_thickness;
-};
-
-struct Levels {
-    std::vector<Slab> slabs;
-    std::vector<int> of_depth;  // level of each requested depth
-    int layer_at(int level) const { return slabs[level > 0 ? level - 1 : 0].layer; }
-};
-
-// Cuts the layers at the requested depths.
-Levels cut(const Problem& problem, const std::vector<double>& depths) {
-    Levels result;
-    result.of_depth.assign(depths.size(), 0);
-    std::vector<std::size_t> by_depth(depths.size());
-    for (std::size_t d = 0; d < depths.size(); ++d) by_depth[d] = d;
-    std::sort(by_depth.begin(), by_depth.end(), [&](std::size_t a, std::size_t b) { return depths[a] < depths[b]; });
-
-    std::size_t next = 0;
-    double top = 0.0;
-    while (next < by_depth.size() && depths[by_depth[next]] == 0.0) ++next;
-    for (int k = 0; k < static_cast<int>(problem.layers.size()); ++k) {
-        const double bottom = top + problem.layers[k].optical_thickness;
-        const bool last = k + 1 == static_cast<int>(problem.layers.size());
-        double from = top;
-        for (; next < by_depth.size() && (last || depths[by_depth[next]] <= bottom); ++next) {
-            const double depth = std::min(depths[by_depth[next]], bottom);
-            if (depth > from) result.slabs.push_back({k, depth - from});
-            from = std::max(from, depth);
-            result.of_depth[by_depth[next]] = static_cast<int>(result.slabs.size());
-        }
-        if (bottom > from || problem.layers[k].optical_thickness == 0.0) result.slabs.push_back({k, bottom - from});
-        top = bottom;
-    }
-    return result;
-}
-
 // What one Fourier order contributes: [depth][direction] Stokes amplitudes for the incident (I,Q) and (U,V) parts.
 struct ModeField {
     std::vector<std::vector<Eigen::Matrix<double, 4, 2>>> upward, downward;
@@ -93,8 +55,8 @@ struct ModeField {
 class FieldSolver {
   public:
     FieldSolver(const StackMedia& media, const FieldRequest& request, const Levels& levels, const LayerMethod& method,
-                bool scalar)
-        : media_(media), request_(request), levels_(levels), method_(method), scalar_(scalar) {}
+                const SingleScattering& single, bool scalar)
+        : media_(media), request_(request), levels_(levels), method_(method), single_(single), scalar_(scalar) {}
 
     ModeField solve(int m) const;
 
@@ -104,6 +66,7 @@ class FieldSolver {
         Added top;
     };
     void solve_group(int m, Components components, ModeField& result) const;
+    void add_single(int m, ModeField& result) const;
     std::vector<Added> sweep_up(int m, Components components, std::vector<Eigen::MatrixXd>& below,
                                 std::vector<Added>& interfaces) const;
     Eigen::MatrixXd incident(Components components) const;
@@ -114,6 +77,7 @@ class FieldSolver {
     const FieldRequest& request_;
     const Levels& levels_;
     const LayerMethod& method_;
+    const SingleScattering& single_;
     bool scalar_;
 };
 
@@ -124,13 +88,15 @@ std::vector<Added> FieldSolver::sweep_up(int m, Components components, std::vect
     std::vector<Added> slabs(count);
     interfaces.resize(count);
     below.resize(count + 1);
-    below[count] = base_reflection(media_.problem.base, media_.layers.back(), m, components);
+    below[count] = media_.base_reflection(m, components);
     std::map<std::pair<int, double>, LayerOperators<double>> solved;
     for (int p = count - 1; p >= 0; --p) {
         const auto [k, thickness] = levels_.slabs[p];
         if (thickness > 0.0) {
             auto [found, is_new] = solved.try_emplace({k, thickness});
-            if (is_new) found->second = method_.solve(media_.kernels[k].system(m, components), {thickness, true});
+            if (is_new)
+                found->second = media_.scatters(k, m) ? method_.solve(media_.kernels[k].system(m, components), {thickness, true})
+                                                      : media_.clear_layer(k, thickness, components);
             slabs[p] = add_layer(found->second, below[p + 1]);
         } else {
             const Eigen::Index n = static_cast<Eigen::Index>(media_.layers[k].size()) * components.count;
@@ -139,7 +105,7 @@ std::vector<Added> FieldSolver::sweep_up(int m, Components components, std::vect
         below[p] = slabs[p].reflection;
         const bool starts_layer = p == 0 || levels_.slabs[p - 1].layer != k;
         if (starts_layer && media_.tops[k]) {
-            interfaces[p] = add_interface(*media_.tops[k], below[p], components, media_.layers[k].size(), p > 0);
+            interfaces[p] = media_.add_interface_of(k, m, components, below[p]);
             if (p > 0) below[p] = interfaces[p].reflection;
         }
     }
@@ -162,7 +128,6 @@ Eigen::MatrixXd FieldSolver::incident(Components components) const {
 // Radiances n^2 y of the view rays of a medium.
 void FieldSolver::pick(const Medium& medium, const Eigen::MatrixXd& light, Components components, bool upward,
                        std::vector<Eigen::Matrix<double, 4, 2>>& out) const {
-    out.resize(request_.mu_o.size(), Eigen::Matrix<double, 4, 2>::Zero());
     if (light.size() == 0) return;
     const int c = components.count;
     std::size_t next = 0;
@@ -171,7 +136,7 @@ void FieldSolver::pick(const Medium& medium, const Eigen::MatrixXd& light, Compo
         if (ray.role != Role::view || ray.index != medium.index) continue;
         for (int row = 0; row < c; ++row) {
             const double sign = upward && components.first + row >= 2 ? -1.0 : 1.0;
-            out[next].row(components.first + row) = sign * medium.index * medium.index * light.row(i * c + row);
+            out[next].row(components.first + row) += sign * medium.index * medium.index * light.row(i * c + row);
         }
         ++next;
     }
@@ -207,11 +172,47 @@ void FieldSolver::solve_group(int m, Components components, ModeField& result) c
     }
 }
 
+void FieldSolver::add_single(int m, ModeField& result) const {
+    const int count = static_cast<int>(levels_.slabs.size());
+    const Medium& above = media_.above;
+    const Eigen::MatrixXd beam = incident({0, scalar_ ? 1 : 4});
+    Eigen::Matrix<double, 4, 2> light = Eigen::Matrix<double, 4, 2>::Zero();
+    for (int i = 0; i < above.size(); ++i)
+        if (above.roles[i] == Role::beam) {
+            const int c = scalar_ ? 1 : 4;
+            light.topRows(c) = beam.middleRows(i * c, c);
+        }
+    const std::vector<RayLevels> lit = single_.field(m, light);
+
+    // Gather the rays of each medium as the solution has them.
+    const auto gather = [&](const Medium& medium, int level, bool upward) {
+        Eigen::MatrixXd all = Eigen::MatrixXd::Zero(4 * medium.size(), 2);
+        for (int i = 0; i < medium.size(); ++i)
+            if (medium.roles[i] == Role::view) {
+                const RayLevels& levels = lit[medium.rays[i]];
+                all.middleRows<4>(4 * i) = upward ? levels.up[level] : levels.down[level];
+            }
+        return all;
+    };
+    for (std::size_t d = 0; d < levels_.of_depth.size(); ++d) {
+        const int p = levels_.of_depth[d];
+        PATINA_EXPECT(p <= count);
+        const Medium& medium = media_.layers[levels_.layer_at(p)];
+        const Medium& leaving = p == 0 ? above : medium;
+        pick(leaving, gather(leaving, p, true), {0, 4}, true, result.upward[d]);
+        pick(medium, gather(medium, p, false), {0, 4}, false, result.downward[d]);
+    }
+}
+
 ModeField FieldSolver::solve(int m) const {
     ModeField result;
     result.upward.resize(levels_.of_depth.size());
     result.downward.resize(levels_.of_depth.size());
-    for (const Components components : component_groups(m, scalar_)) solve_group(m, components, result);
+    for (auto* side : {&result.upward, &result.downward})
+        for (auto& level : *side) level.assign(request_.mu_o.size(), Eigen::Matrix<double, 4, 2>::Zero());
+    if (m <= media_.order)
+        for (const Components components : component_groups(m, scalar_)) solve_group(m, components, result);
+    if (single_.order() > 0 && m <= single_.order()) add_single(m, result);
     for (const auto* side : {&result.upward, &result.downward})
         for (const auto& level : *side)
             for (const auto& amplitudes : level) result.size = std::max(result.size, amplitudes.cwiseAbs().maxCoeff());
@@ -251,9 +252,13 @@ Field solve_field(const Problem& problem, const FieldRequest& request, const Sol
                   const LayerMethod& method) {
     validate(problem);
     validate_request(problem, request);
-    const StackMedia media(problem, rays_of(problem, request, options.streams));
-    const Levels levels = cut(problem, request.optical_depths);
-    const FieldSolver solver(media, request, levels, method, options.scalar);
+    const Truncation truncation = truncate(problem, options.streams);
+    const StackMedia media(truncation.scaled, rays_of(problem, request, options.streams), options.streams);
+    std::vector<double> depths;
+    for (double depth : request.optical_depths) depths.push_back(truncation.scaled_depth(problem, depth));
+    const Levels levels = cut(media.problem, depths);
+    const SingleScattering single(media, truncation, levels.slabs, options.scalar);
+    const FieldSolver solver(media, request, levels, method, single, options.scalar);
 
     Field result;
     const optics::Stokes dark = optics::Stokes::Zero();
@@ -262,11 +267,13 @@ Field solve_field(const Problem& problem, const FieldRequest& request, const Sol
     result.downward = result.upward;
     result.diagnostics.streams = options.streams;
     report_quadrature(media, result.diagnostics);
+    report_truncation(truncation, result.diagnostics);
 
     double largest = 0.0;
     int negligible = 0;
-    for (int begin = 0; begin <= media.order && negligible < 2;) {
-        const int end = std::min(media.order + 1, begin + std::max(1, thread_count()));
+    const int orders = std::max(media.order, single.order()) + 1;
+    for (int begin = 0; begin < orders && negligible < 2;) {
+        const int end = std::min(orders, begin + std::max(1, thread_count()));
         std::vector<ModeField> modes(end - begin);
         parallel_for(begin, end, [&](std::ptrdiff_t m) { modes[m - begin] = solver.solve(static_cast<int>(m)); });
         for (const ModeField& mode : modes) {

@@ -58,6 +58,11 @@ LayerKernel::LayerKernel(const Layer& layer, const Medium& medium) : layer_(laye
 namespace {
 
 struct WignerTables {
+    WignerTables(int order, int m, const Eigen::VectorXd& mu) : p(wigner_d_table(order, m, 0, mu)) {
+        const Eigen::MatrixXd plus = wigner_d_table(order, m, 2, mu), minus = wigner_d_table(order, m, -2, mu);
+        r = -0.5 * (minus + plus);
+        t = -0.5 * (minus - plus);
+    }
     Eigen::MatrixXd p, r, t;
 };
 
@@ -68,7 +73,66 @@ double element(const WignerTables& d, int component, int middle, int i, int l) {
     return component == middle ? d.r(i, l) : d.t(i, l);
 }
 
+// D_l of every ray and its product with the expansion matrix S_l, two columns a degree from l = m on.
+struct DegreeFactors {
+    Eigen::MatrixXd left, right;
+    Eigen::Matrix2d first;  // the matrix of the first degree
+};
+
+// The sum over l splits: D_l(-u) = (-1)^(l+m) Delta D_l(u) Delta, so that degrees of even l + m reach H only through
+// the (I,Q) part of their expansion matrix and G only through (U,V), and odd ones the other way round: `even` gives the
+// factors of P H (with P S_l), else of G P (with S_l P).
+DegreeFactors degree_factors(const WignerTables& d, const optics::ExpansionCoefficients& x, int m,
+                             Components components, bool even) {
+    const int order = x.order(), degrees = std::max(order + 1 - m, 0), nc = components.count;
+    const int rays = static_cast<int>(d.p.rows());
+    const double sign = even ? 1.0 : -1.0;
+    DegreeFactors result;
+    result.left = Eigen::MatrixXd::Zero(rays * nc, 2 * degrees);
+    result.right = result.left;
+    for (int l = m; l <= order; ++l) {
+        const bool linear = ((l + m) % 2 == 0) == even;
+        const int c0 = linear ? 0 : 2, column = 2 * (l - m);
+        Eigen::Matrix2d s;
+        if (linear)
+            s << x.alpha1[l], x.beta1[l], x.beta1[l], x.alpha2[l];
+        else
+            s << x.alpha3[l], sign * x.beta2[l], sign * x.beta2[l], -x.alpha4[l];
+        if (l == m) result.first = s;
+        for (int i = 0; i < rays; ++i)
+            for (int c = 0; c < nc; ++c)
+                for (int k = 0; k < 2; ++k)
+                    result.left(i * nc + c, column + k) = element(d, components.first + c, c0 + k, i, l);
+        result.right.middleCols(column, 2) = result.left.middleCols(column, 2) * s;
+    }
+    return result;
+}
+
+void scale_rays(const Eigen::VectorXd& scale, int components, DegreeFactors& factors) {
+    for (Eigen::Index i = 0; i < scale.size(); ++i) {
+        factors.left.middleRows(i * components, components) *= scale[i];
+        factors.right.middleRows(i * components, components) *= scale[i];
+    }
+}
+
 }  // namespace
+
+PhaseSums phase_sums(const optics::ExpansionCoefficients& expansion, const Medium& medium, int m) {
+    const WignerTables d(expansion.order(), m, medium.mu);
+    const Eigen::VectorXd scale = medium.scale.cwiseQuotient(medium.mu);
+    Eigen::MatrixXd x, y;
+    for (const bool even : {true, false}) {
+        DegreeFactors factors = degree_factors(d, expansion, m, {0, 4}, even);
+        scale_rays(scale, 4, factors);
+        (even ? x : y).noalias() = 0.5 * factors.left * factors.right.transpose();
+    }
+    // Take the P out again.
+    for (Eigen::Index v = 3; v < x.rows(); v += 4) {
+        x.row(v) *= -1.0;
+        y.col(v) *= -1.0;
+    }
+    return {x + y, x - y};
+}
 
 void LayerKernel::finish(int nc, bool carries_flux, TransferSystem<double>& result) const {
     // Cut what view rays would emit and beam rays receive, then add the extinction.
@@ -101,48 +165,22 @@ TransferSystem<double> LayerKernel::system(int m, Components components) const {
     for (int i = 0; i < rays; ++i)
         if (components.first + nc == 4) result.signature[i * nc + nc - 1] = -1.0;
 
-    // Tabulate the functions of the angles, with the degree-0 terms that make the kernel conservative.
-    WignerTables d;
-    d.p = wigner_d_table(order, m, 0, medium_.mu);
-    const Eigen::MatrixXd plus = wigner_d_table(order, m, 2, medium_.mu),
-                          minus = wigner_d_table(order, m, -2, medium_.mu);
-    d.r = -0.5 * (minus + plus);
-    d.t = -0.5 * (minus - plus);
-
-    // The sum over l splits: D_l(-u) = (-1)^(l+m) Delta D_l(u) Delta, so that degrees of even l + m reach H only
-    // through the (I,Q) part of their expansion matrix and G only through (U,V), and odd ones the other way round.
-    const int degrees = std::max(order + 1 - m, 0);
-    Eigen::VectorXd row_scale(n);
-    for (int i = 0; i < rays; ++i) row_scale.segment(i * nc, nc).setConstant(medium_.scale[i] / medium_.mu[i]);
-
+    const WignerTables d(order, m, medium_.mu);
+    Eigen::VectorXd ray_scale = medium_.scale.cwiseQuotient(medium_.mu);
+    const bool repairs = m == 0 && components.first == 0;
     for (const bool even : {true, false}) {
-        const double sign = even ? 1.0 : -1.0;  // P S_l for P H, S_l P for G P
-        // Collect D_l and its product with the expansion matrix over the degrees; the pair of middle components
-        // alternates with the parity of l + m.
-        Eigen::MatrixXd left = Eigen::MatrixXd::Zero(n, 2 * degrees), right = left;
-        for (int l = m; l <= order; ++l) {
-            const bool linear = ((l + m) % 2 == 0) == even;
-            const int c0 = linear ? 0 : 2, column = 2 * (l - m);
-            Eigen::Matrix2d s;
-            if (linear)
-                s << x.alpha1[l], x.beta1[l], x.beta1[l], x.alpha2[l];
-            else
-                s << x.alpha3[l], sign * x.beta2[l], sign * x.beta2[l], -x.alpha4[l];
-            for (int i = 0; i < rays; ++i)
-                for (int c = 0; c < nc; ++c)
-                    for (int k = 0; k < 2; ++k)
-                        left(i * nc + c, column + k) = element(d, components.first + c, c0 + k, i, l);
-            if (l == 0 && linear && components.first == 0)
-                for (int i = 0; i < rays; ++i) {
-                    left(i * nc, column) = isotropic_i_[i];
-                    if (nc > 1) left(i * nc + 1, column) = isotropic_q_[i];
-                }
-            right.middleCols(column, 2) = left.middleCols(column, 2) * s;
+        DegreeFactors factors = degree_factors(d, x, m, components, even);
+        // Degree 0 makes the kernel conservative.
+        if (repairs && even && order >= 0) {
+            for (int i = 0; i < rays; ++i) {
+                factors.left(i * nc, 0) = isotropic_i_[i];
+                if (nc > 1) factors.left(i * nc + 1, 0) = isotropic_q_[i];
+            }
+            factors.right.leftCols(2) = factors.left.leftCols(2) * factors.first;
         }
-        left.array().colwise() *= row_scale.array();
-        right.array().colwise() *= row_scale.array();
+        scale_rays(ray_scale, nc, factors);
         Eigen::MatrixXd& target = even ? result.h : result.g;
-        target.noalias() = -layer_.single_scattering_albedo * left * right.transpose();
+        target.noalias() = -layer_.single_scattering_albedo * factors.left * factors.right.transpose();
     }
 
     finish(nc, m == 0 && components.first == 0, result);

@@ -60,6 +60,13 @@ class LayerKernel {
     Eigen::VectorXd isotropic_i_, isotropic_q_;
 };
 
+// Light scattered from ray j into ray i per optical depth, all four components, in the same variables and for albedo 1:
+// downward into downward or (upward times Delta) into (upward times Delta), and between the two.
+struct PhaseSums {
+    Eigen::MatrixXd same, opposite;
+};
+PhaseSums phase_sums(const optics::ExpansionCoefficients& expansion, const Medium& medium, int m);
+
 // d^l_mn at all cosines: one column a degree l = 0 .. order (columns below max(|m|,|n|) are 0).
 Eigen::MatrixXd wigner_d_table(int order, int m, int n, const Eigen::VectorXd& mu);
 

@@ -2,6 +2,7 @@
 // The plane-parallel radiative transfer problem: what a solver is given. It knows no paint and no particle.
 
 #include <complex>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -17,12 +18,20 @@ struct Layer {
     double refractive_index = 1.0;  // of the host, real; light refracts wherever neighbouring indices differ
 };
 
+// A surface of small facets that are smooth themselves.
+enum class FacetDistribution { ggx, beckmann };
+struct RoughSurface {
+    double alpha = 0.0;  // width of the facets' slopes, in (0, 1]
+    FacetDistribution distribution = FacetDistribution::ggx;
+};
+
 struct BlackBase {};
 struct LambertianBase {
     double reflectance = 0.0;  // 0 .. 1, depolarizing
 };
 struct MetalBase {
-    std::complex<double> refractive_index;  // n + i k; a smooth mirror against the lowest layer's index
+    std::complex<double> refractive_index;  // n + i k; against the lowest layer's index
+    std::optional<RoughSurface> roughness = std::nullopt;  // a smooth mirror without
 };
 using Base = std::variant<BlackBase, LambertianBase, MetalBase>;
 
@@ -32,6 +41,7 @@ struct Problem {
     double refractive_index_above = 1.0;
     std::vector<Layer> layers;  // at least one
     Base base = BlackBase{};
+    std::optional<RoughSurface> top_roughness = std::nullopt;  // of the top interface, if there is one
 };
 
 }  // namespace patina::rt

@@ -6,6 +6,7 @@
 #include "patina/core/constants.h"
 #include "patina/core/parallel.h"
 #include "patina/rt/adding.h"
+#include "patina/rt/single_scattering.h"
 #include "patina/rt/stack.h"
 #include "patina/rt/stack_media.h"
 
@@ -34,20 +35,24 @@ GroupSolution solve_group(const StackMedia& media, const LayerMethod& method, in
     const Problem& problem = media.problem;
     const int count = static_cast<int>(problem.layers.size());
     GroupSolution result;
-    Eigen::MatrixXd below = base_reflection(problem.base, media.layers.back(), m, components);
+    Eigen::MatrixXd below = media.base_reflection(m, components);
     for (int k = count - 1; k >= 0; --k) {
         const Layer& layer = problem.layers[k];
         if (layer.optical_thickness > 0.0) {
             // Over a black base the transmitted light is lost; it is asked for at m = 0 only, to check the energy
             // balance.
-            const TransferSystem<double> system = media.kernels[k].system(m, components);
-            const LayerOperators<double> operators =
-                method.solve(system, {layer.optical_thickness, m == 0 || below.size() > 0});
-            result.energy_balance = std::max(result.energy_balance, flux_error(system, operators));
+            LayerOperators<double> operators;
+            if (media.scatters(k, m)) {
+                const TransferSystem<double> system = media.kernels[k].system(m, components);
+                operators = method.solve(system, {layer.optical_thickness, m == 0 || below.size() > 0});
+                result.energy_balance = std::max(result.energy_balance, flux_error(system, operators));
+            } else {
+                operators = media.clear_layer(k, layer.optical_thickness, components);
+            }
             below = below.size() > 0 ? add_layer(operators, below).reflection : operators.reflection;
         }
         if (media.tops[k])
-            below = add_interface(*media.tops[k], below, components, media.layers[k].size(), k > 0).reflection;
+            below = media.add_interface_of(k, m, components, below).reflection;
     }
     if (below.size() == 0)
         below = Eigen::MatrixXd::Zero(media.above.size() * components.count, media.above.size() * components.count);
@@ -75,31 +80,44 @@ void store(const GroupSolution& group, Components components, const StackMedia& 
                     double value = group.reflection(order[o] * c + row, order[i] * c + column);
                     if (first + row >= 2) value = -value;
                     if (o == i) value -= coherent[i](first + row, first + column);
-                    mode(4 * o + first + row, 4 * i + first + column) =
+                    mode(4 * o + first + row, 4 * i + first + column) +=
                         value / (2.0 * pi * media.above.scale[order[o]] * media.above.scale[order[i]]);
                 }
+}
+
+void store_single(const SingleScattering& single, int m, const StackMedia& media, const std::vector<int>& order,
+                  Eigen::MatrixXd& mode) {
+    const Eigen::Index size = 4 * media.above.size();
+    GroupSolution group{Eigen::MatrixXd::Zero(size, size), 0.0};
+    single.add_reflection(m, group.reflection);
+    const std::vector<optics::Mueller> nothing(order.size(), optics::Mueller::Zero());
+    store(group, {0, 4}, media, order, nothing, mode);
 }
 
 }  // namespace
 
 Reflection solve_reflection(const Problem& problem, const SolveOptions& options, const LayerMethod& method) {
     validate(problem);
-    const StackMedia media(problem, quadrature_rays(problem, options.streams));
+    const Truncation truncation = truncate(problem, options.streams);
+    const StackMedia media(truncation.scaled, quadrature_rays(problem, options.streams), options.streams);
+    const SingleScattering single(media, truncation, cut(media.problem, {}).slabs, options.scalar);
     const std::vector<int> order = ascending(media.above);
     Reflection result;
     result.diagnostics.streams = options.streams;
     report_quadrature(media, result.diagnostics);
+    report_truncation(truncation, result.diagnostics);
     std::vector<optics::Mueller> coherent;
     for (int i : order) {
         result.mu.push_back(media.above.mu[i]);
         result.weights.push_back(media.above.weight(i));
-        coherent.push_back(coherent_reflection(problem, media.rays[media.above.rays[i]]));
+        coherent.push_back(coherent_reflection(media.problem, media.rays[media.above.rays[i]]));
     }
 
     // Solve as many orders at once as there are threads, until two in a row are negligible.
     double largest = 0.0;
     int negligible = 0;
-    const int orders = options.most_fourier_orders > 0 ? std::min(media.order + 1, options.most_fourier_orders) : media.order + 1;
+    int orders = std::max(media.order, single.order()) + 1;
+    if (options.most_fourier_orders > 0) orders = std::min(orders, options.most_fourier_orders);
     std::vector<double> balance(orders, 0.0);
     for (int begin = 0; begin < orders && negligible < 2;) {
         const int end = std::min(orders, begin + std::max(1, thread_count()));
@@ -107,6 +125,8 @@ Reflection solve_reflection(const Problem& problem, const SolveOptions& options,
         parallel_for(begin, end, [&](std::ptrdiff_t m) {
             Eigen::MatrixXd& mode = result.modes[m];
             mode = Eigen::MatrixXd::Zero(4 * order.size(), 4 * order.size());
+            if (m <= single.order()) store_single(single, static_cast<int>(m), media, order, mode);
+            if (m > media.order) return;
             for (const Components components : component_groups(static_cast<int>(m), options.scalar)) {
                 const GroupSolution group = solve_group(media, method, static_cast<int>(m), components);
                 balance[m] = std::max(balance[m], group.energy_balance);

@@ -1,10 +1,14 @@
 #include "patina/rt/stack_media.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 
 namespace patina::rt {
 
-StackMedia::StackMedia(const Problem& p, std::vector<Ray> all_rays) : problem(p), rays(std::move(all_rays)) {
+StackMedia::StackMedia(const Problem& p, std::vector<Ray> all_rays, int streams)
+    : problem(p), rays(std::move(all_rays)) {
     above = medium_of(rays, problem.refractive_index_above);
     for (const Layer& layer : problem.layers) layers.push_back(medium_of(rays, layer.refractive_index));
     for (std::size_t k = 0; k < layers.size(); ++k) {
@@ -16,8 +20,46 @@ StackMedia::StackMedia(const Problem& p, std::vector<Ray> all_rays) : problem(p)
         if (upper.index == layers[k].index)
             tops.emplace_back();
         else
-            tops.emplace_back(interface_between(upper, layers[k]));
+            tops.emplace_back(interface_between(rays, upper, layers[k]));
     }
+
+    if (problem.top_roughness && tops[0]) {
+        rough_top.emplace(*problem.top_roughness, above, &layers[0], std::nullopt, streams);
+        order = std::max(order, rough_top->order());
+    }
+    if (const auto* metal = std::get_if<MetalBase>(&problem.base); metal && metal->roughness) {
+        rough_base.emplace(*metal->roughness, layers.back(), nullptr, metal->refractive_index, streams);
+        order = std::max(order, rough_base->order());
+    }
+}
+
+Eigen::MatrixXd StackMedia::base_reflection(int m, Components components) const {
+    if (rough_base) return rough_base->scattering(m, components);
+    return patina::rt::base_reflection(problem.base, layers.back(), m, components);
+}
+
+Added StackMedia::add_interface_of(int k, int m, Components components, const Eigen::MatrixXd& below) const {
+    if (k > 0 || !rough_top) return add_interface(*tops[k], below, components, layers[k].size(), k > 0);
+    const Eigen::MatrixXd all = rough_top->scattering(m, components);
+    const Eigen::Index a = static_cast<Eigen::Index>(above.size()) * components.count, b = all.rows() - a;
+    Added result{all.topLeftCorner(a, a), all.bottomLeftCorner(b, a)};
+    if (below.size() == 0) return result;
+    Eigen::MatrixXd bounce = Eigen::MatrixXd::Identity(b, b);
+    bounce.noalias() -= all.bottomRightCorner(b, b) * below;
+    result.downward = bounce.partialPivLu().solve(result.downward);
+    const Eigen::MatrixXd upward = below * result.downward;
+    result.reflection.noalias() += all.topRightCorner(a, b) * upward;
+    return result;
+}
+
+LayerOperators<double> StackMedia::clear_layer(int k, double optical_thickness, Components components) const {
+    const int c = components.count;
+    const Eigen::Index n = static_cast<Eigen::Index>(layers[k].size()) * c;
+    LayerOperators<double> result{Eigen::MatrixXd::Zero(n, n), {}};
+    if (std::isinf(optical_thickness)) return result;
+    result.transmission = Eigen::MatrixXd::Zero(n, n);
+    for (Eigen::Index i = 0; i < n; ++i) result.transmission(i, i) = std::exp(-optical_thickness / layers[k].mu[i / c]);
+    return result;
 }
 
 std::vector<Components> component_groups(int m, bool scalar) {
@@ -28,6 +70,7 @@ std::vector<Components> component_groups(int m, bool scalar) {
 
 void report_quadrature(const StackMedia& media, Diagnostics& diagnostics) {
     constexpr double acceptable = 1e-3;
+    constexpr double unresolved = 0.5;  // facets that shadow each other lose up to a fifth themselves
     for (std::size_t k = 0; k < media.kernels.size(); ++k) {
         const double error = media.kernels[k].quadrature_error();
         if (error < acceptable || media.problem.layers[k].single_scattering_albedo == 0.0) continue;
@@ -35,6 +78,13 @@ void report_quadrature(const StackMedia& media, Diagnostics& diagnostics) {
         diagnostics.notes.push_back(fmt::format(
             "layer {}: {} streams integrate its phase function (order {}) with an error of {:.1e}; take more", k,
             diagnostics.streams, media.problem.layers[k].expansion.order(), error));
+    }
+    for (const auto& [what, boundary] :
+         {std::pair{"interface", &media.rough_top}, std::pair{"base", &media.rough_base}}) {
+        if (!*boundary || (*boundary)->correction() < unresolved) continue;
+        diagnostics.converged = false;
+        diagnostics.notes.push_back(fmt::format("{}: {} streams miss {:.0f} % of its rough reflection; take more", what,
+                                                diagnostics.streams, 100.0 * (*boundary)->correction()));
     }
 }
 

@@ -5,19 +5,29 @@
 #include <optional>
 #include <vector>
 
+#include "patina/rt/adding.h"
 #include "patina/rt/boundary.h"
 #include "patina/rt/kernel.h"
 #include "patina/rt/nodes.h"
+#include "patina/rt/rough_boundary.h"
 #include "patina/rt/solver.h"
 
 namespace patina::rt {
 
 struct StackMedia {
-    StackMedia(const Problem& problem, std::vector<Ray> rays);
+    StackMedia(const Problem& problem, std::vector<Ray> rays, int streams);
     StackMedia(const StackMedia&) = delete;
     StackMedia& operator=(const StackMedia&) = delete;
 
-    const Medium& of_layer(int k) const { return layers[k]; }
+    // Reflection of the base; empty when black.
+    Eigen::MatrixXd base_reflection(int m, Components components) const;
+    // The interface on top of layer k over what reflects `below`; there must be one.
+    Added add_interface_of(int k, int m, Components components, const Eigen::MatrixXd& below) const;
+    // A layer that scatters nothing at order m, in closed form.
+    bool scatters(int k, int m) const {
+        return m <= problem.layers[k].expansion.order() && problem.layers[k].single_scattering_albedo > 0.0;
+    }
+    LayerOperators<double> clear_layer(int k, double optical_thickness, Components components) const;
 
     const Problem& problem;
     std::vector<Ray> rays;
@@ -25,7 +35,8 @@ struct StackMedia {
     std::vector<Medium> layers;                  // of each layer
     std::deque<LayerKernel> kernels;             // of each layer
     std::vector<std::optional<Interface>> tops;  // of each layer; nothing where the indices match
-    int order = 0;                               // the highest Fourier order that scattering can excite
+    std::optional<RoughBoundary> rough_top, rough_base;
+    int order = 0;  // the highest Fourier order that scattering or a rough surface can excite
 };
 
 // The groups of Stokes components that are solved together at order m.

@@ -13,6 +13,11 @@ Error bad(const std::string& problem, const std::string& why, const std::string&
     return input_error(SourceLocation{}, problem, why, suggestion);
 }
 
+void validate_roughness(const std::optional<RoughSurface>& surface, const std::string& name) {
+    if (surface && !(surface->alpha > 0.0 && surface->alpha <= 1.0))
+        throw bad(fmt::format("{} has alpha = {}", name, surface->alpha), "it lies in (0, 1]", surface->alpha > 1.0 ? "at most 1" : "leave it smooth");
+}
+
 void validate_expansion(const optics::ExpansionCoefficients& x, const std::string& name) {
     if (x.alpha1.empty())
         throw bad(name + " has no expansion coefficients", "alpha1 is empty", "give at least alpha1 = [1]");
@@ -52,6 +57,7 @@ void validate_layer(const Layer& layer, std::size_t k, std::size_t count) {
 }  // namespace
 
 void validate(const Problem& problem) {
+    validate_roughness(problem.top_roughness, "the interface");
     if (problem.layers.empty()) throw bad("the problem has no layer", "", "give at least one");
     const double above = problem.refractive_index_above;
     if (!(above >= 1.0 && std::isfinite(above)))
@@ -63,6 +69,7 @@ void validate(const Problem& problem) {
                       "it is a fraction of the light", lambertian->reflectance > 1.0 ? "at most 1" : "at least 0");
     if (const auto* metal = std::get_if<MetalBase>(&problem.base)) {
         const auto m = metal->refractive_index;
+        validate_roughness(metal->roughness, "the base");
         if (!(m.real() >= 0.0 && m.imag() >= 0.0 && std::isfinite(m.real()) && std::isfinite(m.imag()) &&
               std::abs(m) > 0.0))
             throw bad(fmt::format("the base has refractive index {} + {} i", m.real(), m.imag()),
