@@ -83,7 +83,8 @@ class ProblemBuilder {
         if (!material.covers(wavelength_nm_) && recipe_.extrapolation == optics::Extrapolation::hold)
             result_.notes.push_back(fmt::format("{} is measured from {:g} to {:g} nm; its ends are held outside", material.name(),
                                                 material.wavelength_min_nm(), material.wavelength_max_nm()));
-        if (!material.k_known()) result_.notes.push_back(fmt::format("{}: the source gives no k, taken as 0 ({})", material.name(), material.citation()));
+        result_.citations.push_back(fmt::format("{}: {}", material.name(), material.citation()));
+        if (!material.k_known()) result_.notes.push_back(fmt::format("{}: the source gives no k, taken as 0", material.name()));
         return material.at(wavelength_nm_, recipe_.extrapolation);
     }
 

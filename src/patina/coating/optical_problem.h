@@ -11,7 +11,8 @@ namespace patina::coating {
 
 struct OpticalProblem {
     rt::Problem problem;
-    std::vector<std::string> notes;  // what was assumed: extrapolated constants, packing, unknown k
+    std::vector<std::string> notes;      // what was assumed: extrapolated constants, packing, unknown k
+    std::vector<std::string> citations;  // "name: publication" of every material used
 };
 
 // The problem at a vacuum wavelength. `tolerance` bounds the relative error of cross sections and coefficients.

@@ -93,12 +93,14 @@ void check_streams(int streams) {
 }
 
 SolvePlan make_plan(const std::vector<double>& wavelengths_nm, const std::vector<OpticalProblem>& problems) {
-    SolvePlan plan{wavelengths_nm, 0, 0, {}};
-    std::set<std::string> notes;
+    SolvePlan plan{wavelengths_nm, 0, 0, {}, {}};
+    std::set<std::string> notes, citations;
     for (const OpticalProblem& optical : problems) {
         plan.largest_expansion_order = std::max(plan.largest_expansion_order, order_of(optical));
         notes.insert(optical.notes.begin(), optical.notes.end());
+        citations.insert(optical.citations.begin(), optical.citations.end());
     }
+    plan.citations.assign(citations.begin(), citations.end());
     plan.notes.assign(notes.begin(), notes.end());
     return plan;
 }
@@ -133,6 +135,7 @@ brdf::Provenance provenance(const coating::Recipe& recipe, const SolveRequest& r
     brdf::Provenance p{request.command, recipe.text, recipe.path, std::string("patina ") + PATINA_VERSION,
                        request.solver,  {}};
     for (size_t i = 0; i < plan.notes.size(); ++i) p.notes[fmt::format("note_{:02}", i)] = plan.notes[i];
+    for (size_t i = 0; i < plan.citations.size(); ++i) p.notes[fmt::format("material_{:02}", i)] = plan.citations[i];
     p.notes["streams"] = std::to_string(plan.streams);
     p.notes["tolerance"] = fmt::format("{:g}", request.tolerance);
     p.notes["error_estimate"] =

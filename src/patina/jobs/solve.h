@@ -26,7 +26,8 @@ struct SolvePlan {
     std::vector<double> wavelengths_nm;
     int streams = 0;
     int largest_expansion_order = 0;
-    std::vector<std::string> notes;  // sorted, each once
+    std::vector<std::string> notes;      // sorted, each once
+    std::vector<std::string> citations;  // of the materials, likewise
 };
 
 struct SolveResult {

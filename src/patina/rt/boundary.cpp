@@ -116,8 +116,6 @@ optics::Mueller coherent_reflection(const Problem& problem, const Ray& ray) {
     using optics::Mueller;
     Mueller below = Mueller::Zero();
     const Layer& last = problem.layers.back();
-    if (problem.top_roughness && problem.refractive_index_above != problem.layers.front().refractive_index)
-        return below;
     if (const auto* metal = std::get_if<MetalBase>(&problem.base); metal && !metal->roughness)
         if (const double mu = ray.cosine_in(last.refractive_index); mu > 0.0)
             below = optics::fresnel_reflection(mu, last.refractive_index, metal->refractive_index);

@@ -41,7 +41,6 @@ struct Problem {
     double refractive_index_above = 1.0;
     std::vector<Layer> layers;  // at least one
     Base base = BlackBase{};
-    std::optional<RoughSurface> top_roughness = std::nullopt;  // of the top interface, if there is one
 };
 
 }  // namespace patina::rt

@@ -11,20 +11,17 @@ namespace {
 
 using optics::Mueller;
 
-// The rays on both sides as one list.
+// A ray at the surface.
 struct Side {
     double cos_in, cos_out;  // of the propagation direction towards and away from the surface
     double scale, index;
     Role role;
 };
 
-std::vector<Side> sides_of(const Medium& upper, const Medium* lower) {
+std::vector<Side> sides_of(const Medium& upper) {
     std::vector<Side> sides;
     for (int i = 0; i < upper.size(); ++i)
         sides.push_back({-upper.mu[i], upper.mu[i], upper.scale[i], upper.index, upper.roles[i]});
-    if (lower)
-        for (int i = 0; i < lower->size(); ++i)
-            sides.push_back({lower->mu[i], -lower->mu[i], lower->scale[i], lower->index, lower->roles[i]});
     return sides;
 }
 
@@ -52,12 +49,11 @@ Eigen::VectorXd balance(const Eigen::MatrixXd& b, const Eigen::VectorXd& flux, c
 
 }  // namespace
 
-RoughBoundary::RoughBoundary(const RoughSurface& surface, const Medium& upper, const Medium* lower,
-                             std::optional<std::complex<double>> metal, int streams)
-    : upper_(&upper), lower_(lower) {
-    const std::vector<Side> sides = sides_of(upper, lower);
+RoughBoundary::RoughBoundary(const RoughSurface& surface, const Medium& upper, std::complex<double> metal, int streams)
+    : upper_(&upper) {
+    const std::vector<Side> sides = sides_of(upper);
     const Eigen::Index rays = static_cast<Eigen::Index>(sides.size());
-    const Microfacets facets(surface, upper.index, metal ? *metal : std::complex<double>(lower->index));
+    const Microfacets facets(surface, upper.index, metal);
     // Lobes are about alpha wide in azimuth at middling angles; the trapezoidal rule on half a turn carries half its
     // points.
     order_ = std::max(8, std::min(static_cast<int>(std::ceil(8.0 / surface.alpha)), 2 * streams));
@@ -85,11 +81,11 @@ RoughBoundary::RoughBoundary(const RoughSurface& surface, const Medium& upper, c
                 const double phi = pi * p / points;
                 const Mueller f = facets(sides[i].cos_in, sides[o].cos_out, phi);
                 values.col(p) = Eigen::Map<const Eigen::Matrix<double, 16, 1>>(f.data());
-                if (metal) mean += cosines(p, 0) * facets(sides[i].cos_in, sides[o].cos_out, phi, true)(0, 0);
+                mean += cosines(p, 0) * facets(sides[i].cos_in, sides[o].cos_out, phi, true)(0, 0);
             }
             const double factor = 2.0 * pi * sides[o].scale * sides[i].scale;
             const Eigen::MatrixXd even = factor * values * cosines, odd = factor * values * sines;
-            mirrors(o, i) = metal ? factor * mean : even(0, 0);
+            mirrors(o, i) = factor * mean;
             for (int m = 0; m <= order_; ++m) {
                 Mueller f;
                 for (int row = 0; row < 4; ++row)
@@ -98,9 +94,7 @@ RoughBoundary::RoughBoundary(const RoughSurface& surface, const Medium& upper, c
                         const bool mixes = (row < 2) != (column < 2);
                         f(row, column) = !mixes ? even(place, m) : row < 2 ? -odd(place, m) : odd(place, m);
                     }
-                // Delta on light that goes up, coming in or going out.
-                if (sides[o].cos_out > 0.0) f.bottomRows<2>() *= -1.0;
-                if (sides[i].cos_in > 0.0) f.rightCols<2>() *= -1.0;
+                f.bottomRows<2>() *= -1.0;  // Delta on the light that goes up
                 modes_[m].block<4, 4>(4 * o, 4 * i) = f;
             }
         }
@@ -122,7 +116,7 @@ RoughBoundary::RoughBoundary(const RoughSurface& surface, const Medium& upper, c
 }
 
 Eigen::MatrixXd RoughBoundary::scattering(int m, Components components) const {
-    const int c = components.count, rays = upper_->size() + (lower_ ? lower_->size() : 0);
+    const int c = components.count, rays = upper_->size();
     Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rays * c, rays * c);
     if (m > order_) return result;
     for (int j = 0; j < rays; ++j)

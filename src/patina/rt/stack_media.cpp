@@ -23,12 +23,8 @@ StackMedia::StackMedia(const Problem& p, std::vector<Ray> all_rays, int streams)
             tops.emplace_back(interface_between(rays, upper, layers[k]));
     }
 
-    if (problem.top_roughness && tops[0]) {
-        rough_top.emplace(*problem.top_roughness, above, &layers[0], std::nullopt, streams);
-        order = std::max(order, rough_top->order());
-    }
     if (const auto* metal = std::get_if<MetalBase>(&problem.base); metal && metal->roughness) {
-        rough_base.emplace(*metal->roughness, layers.back(), nullptr, metal->refractive_index, streams);
+        rough_base.emplace(*metal->roughness, layers.back(), metal->refractive_index, streams);
         order = std::max(order, rough_base->order());
     }
 }
@@ -38,18 +34,8 @@ Eigen::MatrixXd StackMedia::base_reflection(int m, Components components) const 
     return patina::rt::base_reflection(problem.base, layers.back(), m, components);
 }
 
-Added StackMedia::add_interface_of(int k, int m, Components components, const Eigen::MatrixXd& below) const {
-    if (k > 0 || !rough_top) return add_interface(*tops[k], below, components, layers[k].size(), k > 0);
-    const Eigen::MatrixXd all = rough_top->scattering(m, components);
-    const Eigen::Index a = static_cast<Eigen::Index>(above.size()) * components.count, b = all.rows() - a;
-    Added result{all.topLeftCorner(a, a), all.bottomLeftCorner(b, a)};
-    if (below.size() == 0) return result;
-    Eigen::MatrixXd bounce = Eigen::MatrixXd::Identity(b, b);
-    bounce.noalias() -= all.bottomRightCorner(b, b) * below;
-    result.downward = bounce.partialPivLu().solve(result.downward);
-    const Eigen::MatrixXd upward = below * result.downward;
-    result.reflection.noalias() += all.topRightCorner(a, b) * upward;
-    return result;
+Added StackMedia::add_interface_of(int k, Components components, const Eigen::MatrixXd& below) const {
+    return add_interface(*tops[k], below, components, layers[k].size(), k > 0);
 }
 
 LayerOperators<double> StackMedia::clear_layer(int k, double optical_thickness, Components components) const {
@@ -79,13 +65,10 @@ void report_quadrature(const StackMedia& media, Diagnostics& diagnostics) {
             "layer {}: {} streams integrate its phase function (order {}) with an error of {:.1e}; take more", k,
             diagnostics.streams, media.problem.layers[k].expansion.order(), error));
     }
-    for (const auto& [what, boundary] :
-         {std::pair{"interface", &media.rough_top}, std::pair{"base", &media.rough_base}}) {
-        if (!*boundary || (*boundary)->correction() < unresolved) continue;
-        diagnostics.converged = false;
-        diagnostics.notes.push_back(fmt::format("{}: {} streams miss {:.0f} % of its rough reflection; take more", what,
-                                                diagnostics.streams, 100.0 * (*boundary)->correction()));
-    }
+    if (!media.rough_base || media.rough_base->correction() < unresolved) return;
+    diagnostics.converged = false;
+    diagnostics.notes.push_back(fmt::format("base: {} streams miss {:.0f} % of its rough reflection; take more",
+                                            diagnostics.streams, 100.0 * media.rough_base->correction()));
 }
 
 }  // namespace patina::rt

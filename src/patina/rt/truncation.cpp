@@ -67,9 +67,6 @@ Truncation truncate(const Problem& problem, int streams) {
         // Exactly 1 stays exactly 1.
         if (layer.single_scattering_albedo < 1.0) layer.single_scattering_albedo = single * (1.0 - f);
         result.forward[k] = f;
-        // No single path leads through a rough interface.
-        if (problem.top_roughness && problem.refractive_index_above != problem.layers.front().refractive_index)
-            continue;
 
         result.order = std::max(result.order, whole.order());
         result.lacking[k] = whole;

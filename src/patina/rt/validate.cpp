@@ -57,7 +57,6 @@ void validate_layer(const Layer& layer, std::size_t k, std::size_t count) {
 }  // namespace
 
 void validate(const Problem& problem) {
-    validate_roughness(problem.top_roughness, "the interface");
     if (problem.layers.empty()) throw bad("the problem has no layer", "", "give at least one");
     const double above = problem.refractive_index_above;
     if (!(above >= 1.0 && std::isfinite(above)))

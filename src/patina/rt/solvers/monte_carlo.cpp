@@ -149,7 +149,7 @@ class MonteCarloSolver final : public Solver {
     bool is_statistical() const override { return true; }
     std::string unsupported(const Problem& problem) const override {
         const auto* metal = std::get_if<MetalBase>(&problem.base);
-        return problem.top_roughness || (metal && metal->roughness) ? "it has smooth interfaces and mirrors only" : "";
+        return metal && metal->roughness ? "it has smooth interfaces and mirrors only" : "";
     }
     Reflection reflection(const Problem& problem, const SolveOptions& options) const override;
     Field field(const Problem& problem, const FieldRequest& request, const SolveOptions& options) const override;
