@@ -1,13 +1,13 @@
 #pragma once
 // One subcommand a file; each adds itself to the program and runs as a function that returns the exit code.
 
-#include <CLI/CLI.hpp>
-
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "console.h"
+#include <CLI/CLI.hpp>
+
 #include "patina/core/progress.h"
 
 namespace patina::cli {
@@ -16,7 +16,7 @@ namespace patina::cli {
 struct Session {
     Console console;
     CancelToken cancel;
-    std::string command_line;  // as typed, for provenance
+    std::string command_line;     // as typed, for provenance
     std::function<int()> chosen;  // the parsed subcommand, called by main
 
     JobControl control() { return {console.progress(), &cancel}; }

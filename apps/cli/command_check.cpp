@@ -1,6 +1,6 @@
+#include "command.h"
 #include <fmt/format.h>
 
-#include "command.h"
 #include "patina/brdf/physical_checks.h"
 #include "patina/core/error.h"
 #include "patina/io/table_hdf5.h"
@@ -9,7 +9,9 @@ namespace patina::cli {
 
 namespace {
 
-nlohmann::json number_or_null(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr); }
+nlohmann::json number_or_null(double value) {
+    return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
+}
 
 nlohmann::json to_json(const brdf::PhysicalCheck& check) {
     return {{"name", check.name},
@@ -32,8 +34,9 @@ int run(const std::string& file, Session& session) {
     for (const brdf::PhysicalCheck& check : checks) {
         passed = passed && check.passed;
         rows.push_back(to_json(check));
-        session.console.result(fmt::format("{:<6} {:<16} worst {:9.2e} (allowed {:.0e})  {}", check.passed ? "ok" : "FAILED", check.name, check.worst,
-                                           check.tolerance, check.explanation));
+        session.console.result(fmt::format("{:<6} {:<16} worst {:9.2e} (allowed {:.0e})  {}",
+                                           check.passed ? "ok" : "FAILED", check.name, check.worst, check.tolerance,
+                                           check.explanation));
     }
     session.console.document({{"schema", "patina/check/1"}, {"file", file}, {"passed", passed}, {"checks", rows}});
     return passed ? 0 : static_cast<int>(ErrorKind::check);
@@ -43,7 +46,8 @@ int run(const std::string& file, Session& session) {
 
 void add_check(CLI::App& program, Session& session) {
     auto file = std::make_shared<std::string>();
-    CLI::App* command = program.add_subcommand("check", "try a BRDF table against the laws every reflection obeys (exit code 4 when one fails)");
+    CLI::App* command = program.add_subcommand(
+        "check", "try a BRDF table against the laws every reflection obeys (exit code 4 when one fails)");
     command->add_option("file", *file, "BRDF table (.h5)")->required();
     command->callback([file, &session] { session.chosen = [file, &session] { return run(*file, session); }; });
 }

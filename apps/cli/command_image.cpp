@@ -1,6 +1,6 @@
+#include "command.h"
 #include <fmt/format.h>
 
-#include "command.h"
 #include "patina/core/error.h"
 #include "patina/core/files.h"
 #include "patina/io/image_compare.h"
@@ -39,7 +39,8 @@ Product stokes_view(const StokesImage& image, const Options& options) {
     float range = static_cast<float>(options.range), used = 0.0f;
     const Bitmap view = io::stokes_view(plane_of(image, options), options.component, options.normalized, range, used);
     const bool intensity = options.component == 0 && !options.normalized;
-    return io::with_legend(view, {intensity ? io::ColorMap::inferno : io::ColorMap::diverging, intensity ? 0.0f : -used, used});
+    return io::with_legend(
+        view, {intensity ? io::ColorMap::inferno : io::ColorMap::diverging, intensity ? 0.0f : -used, used});
 }
 
 Product dolp_view(const StokesImage& image, const Options& options) {
@@ -48,7 +49,9 @@ Product dolp_view(const StokesImage& image, const Options& options) {
 }
 
 Product aolp_view(const StokesImage& image, const Options& options) {
-    const io::AolpStyle style = options.style == "full" ? io::AolpStyle::full : options.style == "light" ? io::AolpStyle::light : io::AolpStyle::dark;
+    const io::AolpStyle style = options.style == "full"    ? io::AolpStyle::full
+                                : options.style == "light" ? io::AolpStyle::light
+                                                           : io::AolpStyle::dark;
     return io::aolp_view(plane_of(image, options), style);
 }
 
@@ -57,7 +60,7 @@ Product tonemap(const StokesImage& image, const Options& options) {
     tone.exposure_ev = options.exposure;
     tone.automatic_exposure = !options.manual_exposure;
     tone.tone_curve = !options.no_tone_curve;
-    tone.white_balance = options.white_balance == "none"        ? io::WhiteBalance::none
+    tone.white_balance = options.white_balance == "none"         ? io::WhiteBalance::none
                          : options.white_balance == "grey-world" ? io::WhiteBalance::grey_world
                                                                  : io::WhiteBalance::equal_energy;
     return io::tone_map(image, tone);
@@ -65,8 +68,10 @@ Product tonemap(const StokesImage& image, const Options& options) {
 
 // The elements in front of the camera: a polarizer at --angle, or a retarder with its fast axis there.
 Product through_element(const StokesImage& image, const Options& options) {
-    const Eigen::Matrix4d element = options.operation == "polarizer" ? io::polarizer_mueller(options.angle)
-                                                                     : io::retarder_mueller(options.angle, options.retardance < 0 ? 90.0 : options.retardance);
+    const Eigen::Matrix4d element =
+        options.operation == "polarizer"
+            ? io::polarizer_mueller(options.angle)
+            : io::retarder_mueller(options.angle, options.retardance < 0 ? 90.0 : options.retardance);
     return io::apply_mueller(image, element);
 }
 
@@ -80,13 +85,17 @@ const std::vector<Operation>& operations() {
         {"tonemap", "colour as a screen shows it", tonemap},
         {"dolp", "degree of linear polarization, 0 to 1", dolp_view},
         {"aolp", "angle of linear polarization as hue over 180 degrees", aolp_view},
-        {"docp", "degree of circular polarization, left blue, right red", [](const StokesImage& i, const Options& o) -> Product { return io::docp_view(plane_of(i, o)); }},
-        {"type", "linear cyan, circular yellow (Wilkie & Weidlich 2010)", [](const StokesImage& i, const Options& o) -> Product { return io::type_view(plane_of(i, o)); }},
-        {"chirality", "right blue, left yellow (Wilkie & Weidlich 2010)", [](const StokesImage& i, const Options& o) -> Product { return io::chirality_view(plane_of(i, o)); }},
+        {"docp", "degree of circular polarization, left blue, right red",
+         [](const StokesImage& i, const Options& o) -> Product { return io::docp_view(plane_of(i, o)); }},
+        {"type", "linear cyan, circular yellow (Wilkie & Weidlich 2010)",
+         [](const StokesImage& i, const Options& o) -> Product { return io::type_view(plane_of(i, o)); }},
+        {"chirality", "right blue, left yellow (Wilkie & Weidlich 2010)",
+         [](const StokesImage& i, const Options& o) -> Product { return io::chirality_view(plane_of(i, o)); }},
         {"stokes", "one component (--component) on a diverging map", stokes_view},
         {"polarizer", "through a linear polarizer at --angle-deg", through_element},
         {"waveplate", "through a retarder, fast axis at --angle-deg", through_element},
-        {"mosaic", "what a polarization camera's sensor sees (90 45 / 135 0)", [](const StokesImage& i, const Options& o) -> Product { return io::polarization_mosaic(plane_of(i, o)); }},
+        {"mosaic", "what a polarization camera's sensor sees (90 45 / 135 0)",
+         [](const StokesImage& i, const Options& o) -> Product { return io::polarization_mosaic(plane_of(i, o)); }},
     };
     return list;
 }
@@ -103,7 +112,9 @@ void write(const Product& product, const std::string& output) {
         if (exr) return io::write_stokes_exr(output, *image);
         return io::write_png(output, io::tone_map(*image));
     }
-    if (exr) throw Error(ErrorKind::usage, fmt::format("-o {}: this operation makes a picture for the screen; name it .png", output));
+    if (exr)
+        throw Error(ErrorKind::usage,
+                    fmt::format("-o {}: this operation makes a picture for the screen; name it .png", output));
     io::write_png(output, std::get<Bitmap>(product));
 }
 
@@ -111,14 +122,24 @@ int info(const Options& options, Session& session) {
     const StokesImage image = io::read_stokes_exr(options.input);
     const io::ImageSummary summary = io::summarize_image(image);
     Console& console = session.console;
-    console.result(fmt::format("{}: {} x {} pixels, {} spectral bins", options.input, image.width, image.height, image.bin_count()));
+    console.result(fmt::format("{}: {} x {} pixels, {} spectral bins", options.input, image.width, image.height,
+                               image.bin_count()));
     for (int s = 0; s < 4; ++s)
-        console.result(fmt::format("S{}: mean {:.6g}, from {:.6g} to {:.6g}", s, summary.mean[s], summary.smallest[s], summary.largest[s]));
-    console.result(fmt::format("DoLP: mean {:.4f}, largest {:.4f}; {} pixels over-polarized, {} not finite", summary.mean_dolp, summary.largest_dolp,
-                               summary.over_polarized, summary.not_finite));
-    console.document({{"schema", "patina/image-info/1"}, {"width", image.width}, {"height", image.height}, {"bins", image.bin_count()},
-                      {"mean", summary.mean}, {"smallest", summary.smallest}, {"largest", summary.largest}, {"mean_dolp", summary.mean_dolp},
-                      {"largest_dolp", summary.largest_dolp}, {"not_finite", summary.not_finite}, {"metadata", image.metadata}});
+        console.result(fmt::format("S{}: mean {:.6g}, from {:.6g} to {:.6g}", s, summary.mean[s], summary.smallest[s],
+                                   summary.largest[s]));
+    console.result(fmt::format("DoLP: mean {:.4f}, largest {:.4f}; {} pixels over-polarized, {} not finite",
+                               summary.mean_dolp, summary.largest_dolp, summary.over_polarized, summary.not_finite));
+    console.document({{"schema", "patina/image-info/1"},
+                      {"width", image.width},
+                      {"height", image.height},
+                      {"bins", image.bin_count()},
+                      {"mean", summary.mean},
+                      {"smallest", summary.smallest},
+                      {"largest", summary.largest},
+                      {"mean_dolp", summary.mean_dolp},
+                      {"largest_dolp", summary.largest_dolp},
+                      {"not_finite", summary.not_finite},
+                      {"metadata", image.metadata}});
     return 0;
 }
 
@@ -129,26 +150,42 @@ int diff(const Options& options, Session& session) {
     nlohmann::json rows = nlohmann::json::array();
     for (int s = 0; s < 4; ++s) {
         const io::ComponentDifference& d = difference.stokes[s];
-        session.console.result(fmt::format("S{}: rms {:.6g}, mean {:.6g}, largest {:.6g} at ({}, {})", s, d.root_mean_square, d.mean, d.largest, d.largest_x, d.largest_y));
-        rows.push_back({{"rms", d.root_mean_square}, {"mean", d.mean}, {"mean_absolute", d.mean_absolute}, {"largest", d.largest}});
+        session.console.result(fmt::format("S{}: rms {:.6g}, mean {:.6g}, largest {:.6g} at ({}, {})", s,
+                                           d.root_mean_square, d.mean, d.largest, d.largest_x, d.largest_y));
+        rows.push_back({{"rms", d.root_mean_square},
+                        {"mean", d.mean},
+                        {"mean_absolute", d.mean_absolute},
+                        {"largest", d.largest}});
     }
-    session.console.document({{"schema", "patina/image-diff/1"}, {"bands", difference.bands}, {"stokes", rows}, {"not_finite", difference.not_finite}});
-    if (!options.output.empty()) write(std::filesystem::path(options.output).extension() == ".exr" ? Product(io::subtract_images(a, b)) : stokes_view(io::subtract_images(a, b), options), options.output);
+    session.console.document({{"schema", "patina/image-diff/1"},
+                              {"bands", difference.bands},
+                              {"stokes", rows},
+                              {"not_finite", difference.not_finite}});
+    if (!options.output.empty())
+        write(std::filesystem::path(options.output).extension() == ".exr"
+                  ? Product(io::subtract_images(a, b))
+                  : stokes_view(io::subtract_images(a, b), options),
+              options.output);
     return 0;
 }
 
 int run(const Options& options, Session& session) {
     if (options.operation == "info") return info(options, session);
     if (options.operation == "diff") return diff(options, session);
-    const auto found = std::find_if(operations().begin(), operations().end(), [&](const Operation& operation) { return operation.name == options.operation; });
+    const auto found = std::find_if(operations().begin(), operations().end(),
+                                    [&](const Operation& operation) { return operation.name == options.operation; });
     if (found == operations().end())
-        throw Error(ErrorKind::usage, fmt::format("unknown operation \"{}\" {}", options.operation, did_you_mean(options.operation, operation_names())));
-    if (!options.second.empty()) throw Error(ErrorKind::usage, fmt::format("patina image {} takes one picture", options.operation));
-    if (options.output.empty()) throw Error(ErrorKind::usage, fmt::format("patina image {} needs -o OUT", options.operation));
+        throw Error(ErrorKind::usage, fmt::format("unknown operation \"{}\" {}", options.operation,
+                                                  did_you_mean(options.operation, operation_names())));
+    if (!options.second.empty())
+        throw Error(ErrorKind::usage, fmt::format("patina image {} takes one picture", options.operation));
+    if (options.output.empty())
+        throw Error(ErrorKind::usage, fmt::format("patina image {} needs -o OUT", options.operation));
     expect_writable(options.output);
     write(found->make(io::read_stokes_exr(options.input), options), options.output);
     session.console.result(options.output);
-    session.console.document({{"schema", "patina/image/1"}, {"written", options.output}, {"operation", options.operation}});
+    session.console.document(
+        {{"schema", "patina/image/1"}, {"written", options.output}, {"operation", options.operation}});
     return 0;
 }
 
@@ -156,21 +193,30 @@ int run(const Options& options, Session& session) {
 
 void add_image(CLI::App& program, Session& session) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = program.add_subcommand("image", "pictures of polarization from a Stokes EXR, ours or Mitsuba's");
+    CLI::App* command =
+        program.add_subcommand("image", "pictures of polarization from a Stokes EXR, ours or Mitsuba's");
     std::string help = "operation:\n  info        sizes, ranges and provenance\n  diff        A - B with its metrics\n";
-    for (const Operation& operation : operations()) help += fmt::format("  {:<11} {}\n", operation.name, operation.summary);
+    for (const Operation& operation : operations())
+        help += fmt::format("  {:<11} {}\n", operation.name, operation.summary);
     command->add_option("operation", options->operation, help)->required();
     command->add_option("input", options->input, "Stokes EXR")->required();
     command->add_option("second", options->second, "second picture, for diff");
-    command->add_option("-o,--output", options->output, "picture to write (.png, or .exr for polarizer, waveplate, diff)");
-    command->add_option("--wavelength-nm", options->wavelength, "one spectral bin (default: luminance)")->check(CLI::PositiveNumber);
-    command->add_option("--angle-deg", options->angle, "angle of a polarizer or fast axis, counter-clockwise from horizontal");
-    command->add_option("--retardance-deg", options->retardance, "retardance of the wave plate (default 90)")->check(CLI::Range(0.0, 360.0));
+    command->add_option("-o,--output", options->output,
+                        "picture to write (.png, or .exr for polarizer, waveplate, diff)");
+    command->add_option("--wavelength-nm", options->wavelength, "one spectral bin (default: luminance)")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--angle-deg", options->angle,
+                        "angle of a polarizer or fast axis, counter-clockwise from horizontal");
+    command->add_option("--retardance-deg", options->retardance, "retardance of the wave plate (default 90)")
+        ->check(CLI::Range(0.0, 360.0));
     command->add_option("--component", options->component, "stokes, diff: 0 to 3")->check(CLI::Range(0, 3));
     command->add_flag("--normalized", options->normalized, "stokes: divided by S0");
-    command->add_option("--range", options->range, "stokes: end of the colour map (default: 99.5th percentile)")->check(CLI::NonNegativeNumber);
-    command->add_option("--map", options->map, "dolp: grey | viridis | inferno")->check(CLI::IsMember({"grey", "viridis", "inferno"}));
-    command->add_option("--style", options->style, "aolp: dark | light | full")->check(CLI::IsMember({"dark", "light", "full"}));
+    command->add_option("--range", options->range, "stokes: end of the colour map (default: 99.5th percentile)")
+        ->check(CLI::NonNegativeNumber);
+    command->add_option("--map", options->map, "dolp: grey | viridis | inferno")
+        ->check(CLI::IsMember({"grey", "viridis", "inferno"}));
+    command->add_option("--style", options->style, "aolp: dark | light | full")
+        ->check(CLI::IsMember({"dark", "light", "full"}));
     command->add_option("--exposure-ev", options->exposure, "tonemap: exposure in stops, on top of the automatic one");
     command->add_flag("--manual-exposure", options->manual_exposure, "tonemap: no automatic exposure");
     command->add_option("--white-balance", options->white_balance, "tonemap: equal-energy | grey-world | none")

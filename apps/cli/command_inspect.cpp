@@ -1,6 +1,6 @@
+#include "command.h"
 #include <fmt/format.h>
 
-#include "command.h"
 #include "patina/core/error.h"
 #include "patina/jobs/inspect.h"
 
@@ -23,7 +23,8 @@ int run(const std::string& file, Session& session) {
 
 void add_inspect(CLI::App& program, Session& session) {
     auto file = std::make_shared<std::string>();
-    CLI::App* command = program.add_subcommand("inspect", "say what a file is: axes, conventions, ranges, and how to make it again");
+    CLI::App* command =
+        program.add_subcommand("inspect", "say what a file is: axes, conventions, ranges, and how to make it again");
     command->add_option("file", *file, "BRDF table, picture, recipe or material file")->required();
     command->callback([file, &session] { session.chosen = [file, &session] { return run(*file, session); }; });
 }

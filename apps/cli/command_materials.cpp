@@ -1,7 +1,7 @@
+#include "command.h"
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "command.h"
 #include "patina/core/error.h"
 #include "patina/optics/materials.h"
 
@@ -30,11 +30,13 @@ int list(const std::string& word, Session& session) {
     session.console.result(fmt::format("{:<18} {:>12}  k    publication", "name", "nm"));
     for (const optics::MaterialInfo& info : optics::search_builtin_materials(word)) {
         rows.push_back(to_json(info));
-        session.console.result(fmt::format("{:<18} {:>5.0f} - {:<5.0f} {:<4} {}", info.name, info.wavelength_min_nm, info.wavelength_max_nm,
-                                           info.k_known ? "yes" : "no", info.citation));
+        session.console.result(fmt::format("{:<18} {:>5.0f} - {:<5.0f} {:<4} {}", info.name, info.wavelength_min_nm,
+                                           info.wavelength_max_nm, info.k_known ? "yes" : "no", info.citation));
     }
     session.console.document({{"schema", "patina/materials/1"}, {"materials", rows}});
-    if (rows.empty()) session.console.note(fmt::format("no material matches \"{}\"; any refractiveindex.info page or CSV file works too", word));
+    if (rows.empty())
+        session.console.note(
+            fmt::format("no material matches \"{}\"; any refractiveindex.info page or CSV file works too", word));
     return rows.empty() ? static_cast<int>(ErrorKind::runtime) : 0;
 }
 
@@ -51,7 +53,8 @@ int show(const Options& options, Session& session) {
     const optics::OpticalConstants material = optics::material(options.name, ".");
     nlohmann::json rows = nlohmann::json::array();
     session.console.result(fmt::format("{}: {}", material.name(), material.citation()));
-    session.console.result(fmt::format("measured from {:g} to {:g} nm{}", material.wavelength_min_nm(), material.wavelength_max_nm(),
+    session.console.result(fmt::format("measured from {:g} to {:g} nm{}", material.wavelength_min_nm(),
+                                       material.wavelength_max_nm(),
                                        material.k_known() ? "" : "; k is not given by the source and taken as 0"));
     session.console.result("      nm          n              k");
     for (const double wavelength : sample_wavelengths(material, options.wavelength)) {
@@ -59,9 +62,13 @@ int show(const Options& options, Session& session) {
         rows.push_back({{"wavelength_nm", wavelength}, {"n", m.real()}, {"k", m.imag()}});
         session.console.result(fmt::format("{:8.1f} {:10.6f} {:14.6g}", wavelength, m.real(), m.imag()));
     }
-    session.console.document({{"schema", "patina/material/1"}, {"name", material.name()}, {"citation", material.citation()},
-                              {"wavelength_min_nm", material.wavelength_min_nm()}, {"wavelength_max_nm", material.wavelength_max_nm()},
-                              {"k_known", material.k_known()}, {"index", rows}});
+    session.console.document({{"schema", "patina/material/1"},
+                              {"name", material.name()},
+                              {"citation", material.citation()},
+                              {"wavelength_min_nm", material.wavelength_min_nm()},
+                              {"wavelength_max_nm", material.wavelength_max_nm()},
+                              {"k_known", material.k_known()},
+                              {"index", rows}});
     return 0;
 }
 
@@ -77,12 +84,16 @@ void add_materials(CLI::App& program, Session& session) {
 
     CLI::App* search_command = command->add_subcommand("search", "materials by name, alias or author");
     search_command->add_option("word", options->words, "part of a name or publication")->required();
-    search_command->callback([options, &session] { session.chosen = [options, &session] { return list(options->words, session); }; });
+    search_command->callback(
+        [options, &session] { session.chosen = [options, &session] { return list(options->words, session); }; });
 
     CLI::App* show_command = command->add_subcommand("show", "n and k of a built-in material or of a file");
-    show_command->add_option("name", options->name, "built-in name, or a refractiveindex.info .yml or CSV file")->required();
-    show_command->add_option("--wavelength-nm", options->wavelength, "one vacuum wavelength")->check(CLI::PositiveNumber);
-    show_command->callback([options, &session] { session.chosen = [options, &session] { return show(*options, session); }; });
+    show_command->add_option("name", options->name, "built-in name, or a refractiveindex.info .yml or CSV file")
+        ->required();
+    show_command->add_option("--wavelength-nm", options->wavelength, "one vacuum wavelength")
+        ->check(CLI::PositiveNumber);
+    show_command->callback(
+        [options, &session] { session.chosen = [options, &session] { return show(*options, session); }; });
 }
 
 }  // namespace patina::cli

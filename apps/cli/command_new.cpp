@@ -1,8 +1,8 @@
 #include <filesystem>
 
+#include "command.h"
 #include <fmt/format.h>
 
-#include "command.h"
 #include "patina/core/error.h"
 #include "patina/core/files.h"
 #include "patina/jobs/starters.h"
@@ -19,12 +19,14 @@ int run(const Options& options, Session& session) {
     const bool paint = options.kind == "paint";
     std::filesystem::path path = options.name;
     if (!path.has_extension()) path += paint ? ".toml" : ".xml";
-    if (std::filesystem::exists(path)) throw Error(ErrorKind::runtime, fmt::format("{}: exists already", path.string()));
+    if (std::filesystem::exists(path))
+        throw Error(ErrorKind::runtime, fmt::format("{}: exists already", path.string()));
     write_text_file(path, paint ? jobs::starter_recipe() : jobs::starter_scene());
     session.console.result(path.string());
     session.console.document({{"schema", "patina/new/1"}, {"written", path.string()}});
-    session.console.hint(paint ? fmt::format("patina solve {} -o {}.h5", path.string(), path.stem().string())
-                               : fmt::format("patina render {} -o {}.exr --spp 64", path.string(), path.stem().string()));
+    session.console.hint(paint
+                             ? fmt::format("patina solve {} -o {}.h5", path.string(), path.stem().string())
+                             : fmt::format("patina render {} -o {}.exr --spp 64", path.string(), path.stem().string()));
     return 0;
 }
 

@@ -1,8 +1,8 @@
 #include <charconv>
 
+#include "command.h"
 #include <fmt/format.h>
 
-#include "command.h"
 #include "patina/core/error.h"
 #include "patina/jobs/render.h"
 
@@ -33,7 +33,8 @@ double parse_duration(const std::string& text) {
 std::pair<int, int> parse_size(const std::string& text) {
     int width = 0, height = 0;
     char cross = 0, rest = 0;
-    if (std::sscanf(text.c_str(), "%d%c%d%c", &width, &cross, &height, &rest) != 3 || cross != 'x' || width < 1 || height < 1 || width > 65536 || height > 65536)
+    if (std::sscanf(text.c_str(), "%d%c%d%c", &width, &cross, &height, &rest) != 3 || cross != 'x' || width < 1 ||
+        height < 1 || width > 65536 || height > 65536)
         throw Error(ErrorKind::usage, fmt::format("--size {}: write WIDTHxHEIGHT, as in 640x480", text));
     return {width, height};
 }
@@ -43,7 +44,8 @@ std::array<int, 4> parse_crop(const std::string& text) {
     if (numbers.size() != 4) throw Error(ErrorKind::usage, "--crop takes four pixels x0,y0,x1,y1");
     std::array<int, 4> crop{};
     for (int i = 0; i < 4; ++i) {
-        if (!(numbers[i] >= 0 && numbers[i] <= 65536)) throw Error(ErrorKind::usage, "--crop takes four pixels x0,y0,x1,y1");
+        if (!(numbers[i] >= 0 && numbers[i] <= 65536))
+            throw Error(ErrorKind::usage, "--crop takes four pixels x0,y0,x1,y1");
         crop[i] = static_cast<int>(numbers[i]);
     }
     return crop;
@@ -81,18 +83,27 @@ int run(const Options& options, const CLI::App& command, Session& session) {
     const StokesImage& image = pictures.whole;
     std::vector<std::string> written = jobs::write_picture(options.output, image, options.stokes_rgb, options.png);
     for (const auto& [name, part] : pictures.parts)
-        written.push_back(jobs::write_picture(jobs::part_path(options.output, name), part, options.stokes_rgb, false).front());
+        written.push_back(
+            jobs::write_picture(jobs::part_path(options.output, name), part, options.stokes_rgb, false).front());
 
     Console& console = session.console;
     console.end_progress();
-    const auto meta = [&](const char* key) { return image.metadata.count(key) ? image.metadata.at(key) : std::string(); };
+    const auto meta = [&](const char* key) {
+        return image.metadata.count(key) ? image.metadata.at(key) : std::string();
+    };
     for (const auto& [key, value] : image.metadata)
         if (key.starts_with("warning")) console.note("warning: " + value);
     console.result(fmt::format("{}: {} x {} pixels", options.output, image.width, image.height));
     for (size_t part = 0; part < pictures.parts.size(); ++part)
-        console.result(fmt::format("{}: {}", written[written.size() - pictures.parts.size() + part], pictures.parts[part].second.metadata.at("light_paths")));
-    if (!meta("neumann_norm").empty()) console.result(fmt::format("norm of the transport operator, as seen here: {}", meta("neumann_norm")));
-    nlohmann::json document = {{"schema", "patina/render/1"}, {"written", written}, {"width", image.width}, {"height", image.height}, {"metadata", image.metadata}};
+        console.result(fmt::format("{}: {}", written[written.size() - pictures.parts.size() + part],
+                                   pictures.parts[part].second.metadata.at("light_paths")));
+    if (!meta("neumann_norm").empty())
+        console.result(fmt::format("norm of the transport operator, as seen here: {}", meta("neumann_norm")));
+    nlohmann::json document = {{"schema", "patina/render/1"},
+                               {"written", written},
+                               {"width", image.width},
+                               {"height", image.height},
+                               {"metadata", image.metadata}};
     console.document(document);
     if (meta("stopped") == "yes") {
         console.note("stopped early: the picture holds the passes that were done");
@@ -106,23 +117,37 @@ int run(const Options& options, const CLI::App& command, Session& session) {
 
 void add_render(CLI::App& program, Session& session) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = program.add_subcommand("render", "render a Mitsuba 3 scene with full polarization into a spectral Stokes EXR (and a PNG beside it)");
+    CLI::App* command = program.add_subcommand(
+        "render", "render a Mitsuba 3 scene with full polarization into a spectral Stokes EXR (and a PNG beside it)");
     command->add_option("scene", options->scene, "scene (Mitsuba 3 XML)")->required();
     command->add_option("-o,--output", options->output, "picture to write (.exr)")->required();
     command->add_option("--integrator", options->integrator, "in place of the scene's");
     command->add_option("--spp", options->samples, "samples per pixel")->check(CLI::Range(1, 1 << 24));
     command->add_option("--time", options->time, "stop after this time: 90s, 5m, 1h");
-    command->add_option("--noise", options->noise, "stop at this relative noise, as in 0.01")->check(CLI::Range(1e-6, 1.0));
+    command->add_option("--noise", options->noise, "stop at this relative noise, as in 0.01")
+        ->check(CLI::Range(1e-6, 1.0));
     command->add_option("--size", options->size, "film size WIDTHxHEIGHT");
     command->add_option("--crop", options->crop, "window of pixels x0,y0,x1,y1");
     command->add_option("--seed", options->seed, "seed of the random numbers; the same seed gives the same bits");
-    command->add_option("-D,--define", options->defines, "set a <default> of the scene: name=value (repeatable)")->take_all()->allow_extra_args(false);
-    command->add_option("--lpe", options->light_paths, "also write the light of these paths to OUT.name.exr: name=EXPRESSION with L light, E eye, D diffuse, G glossy, S specular, . any, ( ) | * + ?, as in caustics=LS+DE (repeatable)")->take_all()->allow_extra_args(false);
-    command->add_option("--neumann", options->neumann, "also write the first K terms of the Neumann series, L_e, T L_e, ..., and the rest")->check(CLI::Range(1, 100));
+    command->add_option("-D,--define", options->defines, "set a <default> of the scene: name=value (repeatable)")
+        ->take_all()
+        ->allow_extra_args(false);
+    command
+        ->add_option("--lpe", options->light_paths,
+                     "also write the light of these paths to OUT.name.exr: name=EXPRESSION with L light, E eye, D "
+                     "diffuse, G glossy, S specular, . any, ( ) | * + ?, as in caustics=LS+DE (repeatable)")
+        ->take_all()
+        ->allow_extra_args(false);
+    command
+        ->add_option("--neumann", options->neumann,
+                     "also write the first K terms of the Neumann series, L_e, T L_e, ..., and the rest")
+        ->check(CLI::Range(1, 100));
     command->add_flag("--stokes-rgb", options->stokes_rgb, "write Mitsuba's S0.R ... S3.B channels");
     command->add_flag("!--no-png", options->png, "do not write a PNG beside the EXR");
     command->footer("example: patina render examples/painted_spheres.xml -o spheres.exr --spp 64");
-    command->callback([options, command, &session] { session.chosen = [options, command, &session] { return run(*options, *command, session); }; });
+    command->callback([options, command, &session] {
+        session.chosen = [options, command, &session] { return run(*options, *command, session); };
+    });
 }
 
 }  // namespace patina::cli

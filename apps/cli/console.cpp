@@ -1,10 +1,10 @@
 #include "console.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <cstdio>
 #include <cstdlib>
+
+#include <fmt/format.h>
+#include <unistd.h>
 
 namespace patina::cli {
 
@@ -22,7 +22,9 @@ std::string duration_text(double seconds) {
     return fmt::format("{:.0f} h {:02.0f} min", std::floor(seconds / 3600), std::floor(std::fmod(seconds, 3600) / 60));
 }
 
-bool stderr_is_terminal() { return ::isatty(STDERR_FILENO) == 1; }
+bool stderr_is_terminal() {
+    return ::isatty(STDERR_FILENO) == 1;
+}
 
 }  // namespace
 
@@ -74,22 +76,26 @@ void Console::draw(const ProgressReport& report) {
     }
     last_drawn_ = now;
 
-    const double fraction = report.total > 0 ? static_cast<double>(report.done) / static_cast<double>(report.total) : 0.0;
+    const double fraction =
+        report.total > 0 ? static_cast<double>(report.done) / static_cast<double>(report.total) : 0.0;
     const double elapsed = seconds_between(stage_start_, now);
     const double left = fraction > 0 ? elapsed * (1 - fraction) / fraction : 0.0;
 
     if (progress_style == ProgressStyle::json) {
-        const nlohmann::json line = {{"stage", report.stage}, {"done", report.done}, {"total", report.total},
+        const nlohmann::json line = {{"stage", report.stage},   {"done", report.done},  {"total", report.total},
                                      {"detail", report.detail}, {"elapsed_s", elapsed}, {"left_s", left}};
         fmt::print(stderr, "{}\n", line.dump());
     } else if (progress_style == ProgressStyle::plain) {
-        fmt::print(stderr, "{} {}/{} {} ({} left)\n", report.stage, report.done, report.total, report.detail, duration_text(left));
+        fmt::print(stderr, "{} {}/{} {} ({} left)\n", report.stage, report.done, report.total, report.detail,
+                   duration_text(left));
     } else {
         constexpr int width = 30;
         const int filled = static_cast<int>(fraction * width);
-        const std::string remaining = finished ? "in " + duration_text(elapsed) : fraction > 0 ? duration_text(left) + " left" : "";
-        fmt::print(stderr, "\r\033[K{:<10} [{:=<{}}{:<{}}] {:3.0f} %  {}  {}", report.stage, "", filled, "", width - filled,
-                   100 * fraction, remaining, report.detail);
+        const std::string remaining = finished       ? "in " + duration_text(elapsed)
+                                      : fraction > 0 ? duration_text(left) + " left"
+                                                     : "";
+        fmt::print(stderr, "\r\033[K{:<10} [{:=<{}}{:<{}}] {:3.0f} %  {}  {}", report.stage, "", filled, "",
+                   width - filled, 100 * fraction, remaining, report.detail);
         std::fflush(stderr);
         line_open_ = true;
         if (finished) {

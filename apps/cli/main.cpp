@@ -2,9 +2,10 @@
 
 #include <csignal>
 #include <cstdlib>
-#include <unistd.h>
 
 #include "command.h"
+#include <unistd.h>
+
 #include "patina/core/contract.h"
 #include "patina/core/error.h"
 #include "patina/core/parallel.h"
@@ -25,20 +26,21 @@ extern "C" void on_interrupt(int) {
 }
 
 void add_global_options(CLI::App& program, cli::Session& session) {
-    program.add_option_function<int>("-j,--threads", [](int count) { set_thread_count(count); },
-                                     "threads (default: all processors)")
+    program
+        .add_option_function<int>(
+            "-j,--threads", [](int count) { set_thread_count(count); }, "threads (default: all processors)")
         ->check(CLI::Range(0, 4096));
     program.add_flag("-q,--quiet", session.console.quiet, "say only what is asked for, and errors");
     program.add_flag("-v,--verbose", session.console.verbosity, "say more");
     program.add_flag("--json", session.console.json, "exactly one JSON document on stdout");
     program
         .add_option("--progress", session.console.progress_style, "how to show progress: auto, bar, plain, json, none")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, cli::ProgressStyle>{
-            {"auto", cli::ProgressStyle::automatic},
-            {"bar", cli::ProgressStyle::bar},
-            {"plain", cli::ProgressStyle::plain},
-            {"json", cli::ProgressStyle::json},
-            {"none", cli::ProgressStyle::none}}));
+        ->transform(
+            CLI::CheckedTransformer(std::map<std::string, cli::ProgressStyle>{{"auto", cli::ProgressStyle::automatic},
+                                                                              {"bar", cli::ProgressStyle::bar},
+                                                                              {"plain", cli::ProgressStyle::plain},
+                                                                              {"json", cli::ProgressStyle::json},
+                                                                              {"none", cli::ProgressStyle::none}}));
     program.add_option("--color", session.console.color, "auto, always, never (NO_COLOR is honoured)")
         ->check(CLI::IsMember({"auto", "always", "never"}));
     program.set_version_flag("--version", std::string("patina ") + PATINA_VERSION);
@@ -65,7 +67,8 @@ int run(int argc, char** argv) {
     std::signal(SIGPIPE, SIG_IGN);
     for (int i = 0; i < argc; ++i) session.command_line += (i ? " " : "") + std::string(i ? argv[i] : "patina");
 
-    CLI::App program{"Patina computes how painted and coated materials look, polarization included, from what they are made of."};
+    CLI::App program{
+        "Patina computes how painted and coated materials look, polarization included, from what they are made of."};
     program.name("patina");
     program.require_subcommand(1);
     program.fallthrough();
@@ -114,4 +117,6 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) { return run(argc, argv); }
+int main(int argc, char** argv) {
+    return run(argc, argv);
+}

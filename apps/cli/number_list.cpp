@@ -1,8 +1,8 @@
 #include <charconv>
 
+#include "command.h"
 #include <fmt/format.h>
 
-#include "command.h"
 #include "patina/core/error.h"
 
 namespace patina::cli {
@@ -10,7 +10,8 @@ namespace patina::cli {
 namespace {
 
 Error bad_list(std::string_view text, std::string_view option) {
-    return Error(ErrorKind::usage, fmt::format("{}: \"{}\" is not a list of numbers (write 0,30,60 or 380:780:5)", option, text));
+    return Error(ErrorKind::usage,
+                 fmt::format("{}: \"{}\" is not a list of numbers (write 0,30,60 or 380:780:5)", option, text));
 }
 
 double parse_number(std::string_view text, std::string_view whole, std::string_view option) {

@@ -57,8 +57,8 @@ TEST_F(PaintCommand, ATableOfTheRecipeIsOnTarget) {
     const Outcome outcome =
         patina("paint " + wall() + " --quick --json --wavelengths 450,550,650 --streams 16 --target wall.h5");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-    // The same nodes; sizes averaged to tolerances a factor ten apart, which no eye sees: a thousandth of a just noticeable
-    // difference.
+    // The same nodes; sizes averaged to tolerances a factor ten apart, which no eye sees: a thousandth of a just
+    // noticeable difference.
     EXPECT_LT(json::parse(outcome.out).at("target").at("delta_e_2000"), 1e-3);
     const Outcome same = patina("compare wall.h5 wall.h5 --json");
     ASSERT_EQ(same.exit_code, 0) << same.err;

@@ -1,9 +1,8 @@
 // The main job as a user runs it: recipe to table to figure, scene to polarized picture.
 
+#include "run_patina.h"
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
-
-#include "run_patina.h"
 
 namespace patina::test {
 namespace {
@@ -16,15 +15,20 @@ class Pipeline : public PatinaTest {
     std::string quick_render(const std::string& scene, const std::string& more) const {
         return "render " + example(scene).string() + " --size 48x27 --no-png " + more;
     }
-    json info_of(const std::string& picture) const { return json::parse(patina("image info " + picture + " --json").out); }
+    json info_of(const std::string& picture) const {
+        return json::parse(patina("image info " + picture + " --json").out);
+    }
 };
 
 TEST_F(Pipeline, TheExampleSolvesChecksInspectsAndPlots) {
-    ASSERT_EQ(patina("solve " + example("tio2_on_aluminium.toml").string() + " -o a.h5 --wavelengths 450:650:50").exit_code, 0);
+    ASSERT_EQ(
+        patina("solve " + example("tio2_on_aluminium.toml").string() + " -o a.h5 --wavelengths 450:650:50").exit_code,
+        0);
     const Outcome check = patina("check a.h5 --json");
     EXPECT_EQ(check.exit_code, 0) << check.out;
     EXPECT_TRUE(json::parse(check.out).at("passed"));
-    EXPECT_THAT(patina("inspect a.h5").out, HasSubstr("Devore. Refractive indices of rutile"));  // each material names its publication
+    EXPECT_THAT(patina("inspect a.h5").out,
+                HasSubstr("Devore. Refractive indices of rutile"));  // each material names its publication
     for (const char* kind : {"lobe", "mueller", "dolp", "spectrum"}) {
         const Outcome plot = patina(std::string("plot a.h5 --kind ") + kind + " -o " + kind + ".svg");
         EXPECT_EQ(plot.exit_code, 0) << plot.err;
@@ -59,7 +63,8 @@ TEST_F(Pipeline, PaintedSpheresAreRenderedWithPolarization) {
 }
 
 TEST_F(Pipeline, AMitsubaSceneRendersUnmodifiedAndWithMitsubasChannelNames) {
-    const Outcome outcome = patina("render " + example("polar_balls.xml").string() + " -o b.exr --size 32x32 --spp 4 --stokes-rgb --no-png");
+    const Outcome outcome = patina("render " + example("polar_balls.xml").string() +
+                                   " -o b.exr --size 32x32 --spp 4 --stokes-rgb --no-png");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(read_file(folder() / "b.exr"), HasSubstr("S3.B"));
 }
@@ -67,13 +72,17 @@ TEST_F(Pipeline, AMitsubaSceneRendersUnmodifiedAndWithMitsubasChannelNames) {
 TEST_F(Pipeline, TheSameSeedGivesTheSameBitsOnOneAndTwoThreads) {
     const std::string scene = example("polar_balls.xml").string();
     for (const char* threads : {"1", "2"})
-        ASSERT_EQ(patina("render " + scene + " -o t" + threads + ".exr --size 40x40 --spp 8 --seed 7 --no-png -j " + threads).exit_code, 0);
+        ASSERT_EQ(
+            patina("render " + scene + " -o t" + threads + ".exr --size 40x40 --spp 8 --seed 7 --no-png -j " + threads)
+                .exit_code,
+            0);
     const json difference = json::parse(patina("image diff t1.exr t2.exr --json").out);
     for (const json& component : difference.at("stokes")) EXPECT_EQ(component.at("largest"), 0.0);
 }
 
 TEST_F(Pipeline, AnInterruptedRenderKeepsItsPicture) {
-    const std::string command = "cd '" + folder().string() + "' && timeout -s INT 4 '" + PATINA_BINARY + "' -q render '" + example("polar_balls.xml").string() +
+    const std::string command = "cd '" + folder().string() + "' && timeout -s INT 4 '" + PATINA_BINARY +
+                                "' -q render '" + example("polar_balls.xml").string() +
                                 "' -o i.exr --size 64x64 --spp 1000000 --no-png >/dev/null 2>&1; echo $? > code";
     ASSERT_EQ(std::system(command.c_str()), 0);
     EXPECT_EQ(read_file(folder() / "code"), "124\n");  // timeout's own code: it had to stop the program
@@ -87,7 +96,9 @@ struct BadScene {
     const char* message;
 };
 
-void PrintTo(const BadScene& scene, std::ostream* os) { *os << scene.name; }
+void PrintTo(const BadScene& scene, std::ostream* os) {
+    *os << scene.name;
+}
 
 class BadScenes : public PatinaTest, public ::testing::WithParamInterface<BadScene> {};
 
@@ -103,23 +114,42 @@ TEST_P(BadScenes, AreRefusedWithAPlaceAndAReason) {
 const BadScene bad_scenes[] = {
     {"Empty", "", "bad.xml"},
     {"Truncated", "<scene version=\"3.0.0\"><shape type=\"sphere\">", "bad.xml:1:"},
-    {"UnknownShape", "<scene version=\"3.0.0\"><sensor type=\"perspective\"/>\n<shape type=\"sfere\"/>\n</scene>", "did you mean \"sphere\"?"},
-    {"UnknownProperty", "<scene version=\"3.0.0\"><sensor type=\"perspective\"/>\n<shape type=\"sphere\">\n<float name=\"radios\" value=\"1\"/>\n</shape>\n</scene>", "did you mean \"radius\"?"},
-    {"NotANumber", "<scene version=\"3.0.0\">\n<shape type=\"sphere\">\n<float name=\"radius\" value=\"big\"/>\n</shape>\n</scene>", "bad.xml:3:"},
-    {"Nan", "<scene version=\"3.0.0\">\n<shape type=\"sphere\">\n<float name=\"radius\" value=\"nan\"/>\n</shape>\n</scene>", "bad.xml:3:"},
-    {"MissingMesh", "<scene version=\"3.0.0\">\n<shape type=\"ply\">\n<string name=\"filename\" value=\"no.ply\"/>\n</shape>\n</scene>", "no.ply"},
+    {"UnknownShape", "<scene version=\"3.0.0\"><sensor type=\"perspective\"/>\n<shape type=\"sfere\"/>\n</scene>",
+     "did you mean \"sphere\"?"},
+    {"UnknownProperty",
+     "<scene version=\"3.0.0\"><sensor type=\"perspective\"/>\n<shape type=\"sphere\">\n<float name=\"radios\" "
+     "value=\"1\"/>\n</shape>\n</scene>",
+     "did you mean \"radius\"?"},
+    {"NotANumber",
+     "<scene version=\"3.0.0\">\n<shape type=\"sphere\">\n<float name=\"radius\" value=\"big\"/>\n</shape>\n</scene>",
+     "bad.xml:3:"},
+    {"Nan",
+     "<scene version=\"3.0.0\">\n<shape type=\"sphere\">\n<float name=\"radius\" value=\"nan\"/>\n</shape>\n</scene>",
+     "bad.xml:3:"},
+    {"MissingMesh",
+     "<scene version=\"3.0.0\">\n<shape type=\"ply\">\n<string name=\"filename\" "
+     "value=\"no.ply\"/>\n</shape>\n</scene>",
+     "no.ply"},
     {"MissingRecipe",
-     "<scene version=\"3.0.0\">\n<shape type=\"sphere\"><bsdf type=\"paint\">\n<string name=\"recipe\" value=\"no.toml\"/>\n</bsdf></shape>\n</scene>", "no.toml"},
+     "<scene version=\"3.0.0\">\n<shape type=\"sphere\"><bsdf type=\"paint\">\n<string name=\"recipe\" "
+     "value=\"no.toml\"/>\n</bsdf></shape>\n</scene>",
+     "no.toml"},
     {"CyclicInclude", "<scene version=\"3.0.0\">\n<include filename=\"bad.xml\"/>\n</scene>", "bad.xml:2:"},
-    {"UnknownReference", "<scene version=\"3.0.0\">\n<shape type=\"sphere\"><ref id=\"gold\"/></shape>\n</scene>", "gold"},
-    {"ZeroRadius", "<scene version=\"3.0.0\"><sensor type=\"perspective\"/>\n<shape type=\"sphere\">\n<float name=\"radius\" value=\"0\"/>\n</shape>\n</scene>", "radius"},
+    {"UnknownReference", "<scene version=\"3.0.0\">\n<shape type=\"sphere\"><ref id=\"gold\"/></shape>\n</scene>",
+     "gold"},
+    {"ZeroRadius",
+     "<scene version=\"3.0.0\"><sensor type=\"perspective\"/>\n<shape type=\"sphere\">\n<float name=\"radius\" "
+     "value=\"0\"/>\n</shape>\n</scene>",
+     "radius"},
     {"NoSensor", "<scene version=\"3.0.0\">\n<shape type=\"sphere\"/>\n</scene>", "sensor"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Scenes, BadScenes, ::testing::ValuesIn(bad_scenes), [](const auto& param) { return param.param.name; });
+INSTANTIATE_TEST_SUITE_P(Scenes, BadScenes, ::testing::ValuesIn(bad_scenes),
+                         [](const auto& param) { return param.param.name; });
 
 TEST_F(Pipeline, AMillionCharactersInAnAttributeAreRefusedQuickly) {
-    write_file(folder() / "long.xml", "<scene version=\"3.0.0\"><shape type=\"" + std::string(1'000'000, 'x') + "\"/></scene>");
+    write_file(folder() / "long.xml",
+               "<scene version=\"3.0.0\"><shape type=\"" + std::string(1'000'000, 'x') + "\"/></scene>");
     const Outcome outcome = patina("render long.xml -o x.exr", 20);
     EXPECT_EQ(outcome.exit_code, 3);
     EXPECT_LT(outcome.err.size(), 2000u);
@@ -128,7 +158,8 @@ TEST_F(Pipeline, AMillionCharactersInAnAttributeAreRefusedQuickly) {
 TEST_F(Pipeline, BrokenTablesAndPicturesAreRefused) {
     write_file(folder() / "noise.h5", "not an HDF5 file");
     write_file(folder() / "noise.exr", "not an EXR file");
-    for (const char* command : {"check noise.h5", "inspect noise.h5", "plot noise.h5 -o x.svg", "image dolp noise.exr -o x.png", "image info nowhere.exr"})
+    for (const char* command : {"check noise.h5", "inspect noise.h5", "plot noise.h5 -o x.svg",
+                                "image dolp noise.exr -o x.png", "image info nowhere.exr"})
         EXPECT_EQ(patina(command, 30).exit_code, 3) << command;
     EXPECT_FALSE(fs::exists(folder() / "x.png"));
 }

@@ -1,8 +1,7 @@
 // Every kind of bad recipe ends with exit code 3, the place, and a reason; none is a crash, a hang or a number.
 
-#include <gmock/gmock.h>
-
 #include "run_patina.h"
+#include <gmock/gmock.h>
 
 namespace patina::test {
 namespace {
@@ -15,7 +14,9 @@ struct BadRecipe {
     const char* message;  // part of what must be said
 };
 
-void PrintTo(const BadRecipe& recipe, std::ostream* os) { *os << recipe.name; }
+void PrintTo(const BadRecipe& recipe, std::ostream* os) {
+    *os << recipe.name;
+}
 
 const std::string good_layer = R"([[layers]]
 thickness_um = 10
@@ -44,49 +45,70 @@ const BadRecipe bad_recipes[] = {
     {"UnknownKey", "[[layers]]\nthicknes_um = 10\n", "did you mean \"thickness_um\"?"},
     {"UnknownTable", "[interfaces]\ntype = \"smooth\"\n", "did you mean \"interface\"?"},
     {"MissingThickness", "[[layers]]\nbinder = \"acrylic\"\n", "layers.0.thickness_um is missing"},
-    {"NegativeThickness", "[[layers]]\nthickness_um = -1\nbinder = \"acrylic\"\n", "bad.toml:2:16: layers.0.thickness_um = -1 is out of range"},
+    {"NegativeThickness", "[[layers]]\nthickness_um = -1\nbinder = \"acrylic\"\n",
+     "bad.toml:2:16: layers.0.thickness_um = -1 is out of range"},
     {"NanThickness", "[[layers]]\nthickness_um = nan\nbinder = \"acrylic\"\n", "out of range"},
     {"InfiniteThickness", "[[layers]]\nthickness_um = inf\nbinder = \"acrylic\"\n", "out of range"},
-    {"ThicknessIsText", "[[layers]]\nthickness_um = \"ten\"\nbinder = \"acrylic\"\n", "must be a number (it is a string)"},
+    {"ThicknessIsText", "[[layers]]\nthickness_um = \"ten\"\nbinder = \"acrylic\"\n",
+     "must be a number (it is a string)"},
     {"LayersIsNumber", "layers = 3\n", "must be a array of tables"},
     {"UnknownBinder", "[[layers]]\nthickness_um = 1\nbinder = \"acryllic\"\n", "did you mean \"acrylic\"?"},
     {"NegativeK", "[[layers]]\nthickness_um = 1\nbinder = { n = 1.5, k = -0.1 }\n", "k = -0.1 is out of range"},
     {"BinderFileMissing", "[[layers]]\nthickness_um = 1\nbinder = \"nowhere.yml\"\n", "nowhere.yml"},
     {"FractionAboveClosestPacking",
-     "[[layers]]\nthickness_um = 1\nbinder = \"acrylic\"\n[[layers.pigments]]\nmaterial = \"Au\"\nvolume_fraction = 0.8\nsize = { distribution = \"mono\", radius_um = 0.1 }\n",
+     "[[layers]]\nthickness_um = 1\nbinder = \"acrylic\"\n[[layers.pigments]]\nmaterial = \"Au\"\nvolume_fraction = "
+     "0.8\nsize = { distribution = \"mono\", radius_um = 0.1 }\n",
      "the nearest legal value is 0.74"},
     {"FractionsAddUpToTooMuch",
-     "[[layers]]\nthickness_um = 1\nbinder = \"acrylic\"\n[[layers.pigments]]\nmaterial = \"Au\"\nvolume_fraction = 0.4\nsize = { distribution = \"mono\", "
-     "radius_um = 0.1 }\n[[layers.pigments]]\nmaterial = \"Ag\"\nvolume_fraction = 0.4\nsize = { distribution = \"mono\", radius_um = 0.1 }\n",
+     "[[layers]]\nthickness_um = 1\nbinder = \"acrylic\"\n[[layers.pigments]]\nmaterial = \"Au\"\nvolume_fraction = "
+     "0.4\nsize = { distribution = \"mono\", "
+     "radius_um = 0.1 }\n[[layers.pigments]]\nmaterial = \"Ag\"\nvolume_fraction = 0.4\nsize = { distribution = "
+     "\"mono\", radius_um = 0.1 }\n",
      "add up to 0.8"},
     {"UnknownDistribution",
-     "[[layers]]\nthickness_um = 1\nbinder = \"acrylic\"\n[[layers.pigments]]\nmaterial = \"Au\"\nvolume_fraction = 0.1\nsize = { distribution = \"lognormall\", "
+     "[[layers]]\nthickness_um = 1\nbinder = \"acrylic\"\n[[layers.pigments]]\nmaterial = \"Au\"\nvolume_fraction = "
+     "0.1\nsize = { distribution = \"lognormall\", "
      "radius_um = 0.1 }\n",
      "did you mean \"lognormal\"?"},
     {"KeyOfAnotherDistribution",
-     "[[layers]]\nthickness_um = 1\nbinder = \"acrylic\"\n[[layers.pigments]]\nmaterial = \"Au\"\nvolume_fraction = 0.1\nsize = { distribution = \"mono\", "
+     "[[layers]]\nthickness_um = 1\nbinder = \"acrylic\"\n[[layers.pigments]]\nmaterial = \"Au\"\nvolume_fraction = "
+     "0.1\nsize = { distribution = \"mono\", "
      "radius_um = 0.1, sigma_g = 1.3 }\n",
      "belongs to distribution = \"lognormal\""},
     {"SigmaOne",
-     "[[layers]]\nthickness_um = 1\nbinder = \"acrylic\"\n[[layers.pigments]]\nmaterial = \"Au\"\nvolume_fraction = 0.1\nsize = { distribution = \"lognormal\", "
+     "[[layers]]\nthickness_um = 1\nbinder = \"acrylic\"\n[[layers.pigments]]\nmaterial = \"Au\"\nvolume_fraction = "
+     "0.1\nsize = { distribution = \"lognormal\", "
      "median_radius_um = 0.1, sigma_g = 1.0 }\n",
      "must be above 1"},
-    {"AlbedoAboveOne", "[[layers]]\noptical_thickness = 1\nsingle_scattering_albedo = 1.1\nexpansion = \"x.csv\"\n", "the nearest legal value is 1"},
-    {"CoefficientsMissing", "[[layers]]\noptical_thickness = 1\nsingle_scattering_albedo = 0.9\nexpansion = \"nowhere.csv\"\n", "nowhere.csv"},
-    {"MixedLayer", "[[layers]]\noptical_thickness = 1\nsingle_scattering_albedo = 0.9\nexpansion = \"x.csv\"\nthickness_um = 3\n", "has no meaning here"},
-    {"UnknownBase", "[[layers]]\nthickness_um = 1\nbinder = \"acrylic\"\n[base]\ntype = \"mirror\"\n", "base.type = \"mirror\" is not known"},
-    {"ReflectanceAboveOne", "[[layers]]\nthickness_um = 1\nbinder = \"acrylic\"\n[base]\ntype = \"lambertian\"\nreflectance = 2\n", "the nearest legal value is 1"},
-    {"MetalWithoutMaterial", "[[layers]]\nthickness_um = 1\nbinder = \"acrylic\"\n[base]\ntype = \"metal\"\n", "base.material is missing"},
-    {"ReflectanceOfMetal", "[[layers]]\nthickness_um = 1\nbinder = \"acrylic\"\n[base]\ntype = \"metal\"\nmaterial = \"Al\"\nreflectance = 0.5\n", "has no meaning here"},
+    {"AlbedoAboveOne", "[[layers]]\noptical_thickness = 1\nsingle_scattering_albedo = 1.1\nexpansion = \"x.csv\"\n",
+     "the nearest legal value is 1"},
+    {"CoefficientsMissing",
+     "[[layers]]\noptical_thickness = 1\nsingle_scattering_albedo = 0.9\nexpansion = \"nowhere.csv\"\n", "nowhere.csv"},
+    {"MixedLayer",
+     "[[layers]]\noptical_thickness = 1\nsingle_scattering_albedo = 0.9\nexpansion = \"x.csv\"\nthickness_um = 3\n",
+     "has no meaning here"},
+    {"UnknownBase", "[[layers]]\nthickness_um = 1\nbinder = \"acrylic\"\n[base]\ntype = \"mirror\"\n",
+     "base.type = \"mirror\" is not known"},
+    {"ReflectanceAboveOne",
+     "[[layers]]\nthickness_um = 1\nbinder = \"acrylic\"\n[base]\ntype = \"lambertian\"\nreflectance = 2\n",
+     "the nearest legal value is 1"},
+    {"MetalWithoutMaterial", "[[layers]]\nthickness_um = 1\nbinder = \"acrylic\"\n[base]\ntype = \"metal\"\n",
+     "base.material is missing"},
+    {"ReflectanceOfMetal",
+     "[[layers]]\nthickness_um = 1\nbinder = \"acrylic\"\n[base]\ntype = \"metal\"\nmaterial = \"Al\"\nreflectance = "
+     "0.5\n",
+     "has no meaning here"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Recipes, BadRecipes, ::testing::ValuesIn(bad_recipes), [](const auto& param) { return param.param.name; });
+INSTANTIATE_TEST_SUITE_P(Recipes, BadRecipes, ::testing::ValuesIn(bad_recipes),
+                         [](const auto& param) { return param.param.name; });
 
 class CoefficientFiles : public PatinaTest {
   protected:
     Outcome field_with(const std::string& coefficients) {
         write_file(folder() / "c.csv", coefficients);
-        write_file(folder() / "r.toml", "[[layers]]\noptical_thickness = 1\nsingle_scattering_albedo = 0.9\nexpansion = \"c.csv\"\n");
+        write_file(folder() / "r.toml",
+                   "[[layers]]\noptical_thickness = 1\nsingle_scattering_albedo = 0.9\nexpansion = \"c.csv\"\n");
         return patina("field r.toml --theta-i-deg 30", 60);
     }
 };
@@ -132,7 +154,9 @@ TEST_F(CommandLine, UnwritableOutputIsARuntimeErrorAndLeavesNothing) {
 }
 
 TEST_F(CommandLine, SettingsReachTheRecipe) {
-    const Outcome outcome = patina("field " + example("tio2_on_aluminium.toml").string() + " --theta-i-deg 30 --wavelength-nm 550 --set layers.0.thickness_um=-3", 60);
+    const Outcome outcome = patina("field " + example("tio2_on_aluminium.toml").string() +
+                                       " --theta-i-deg 30 --wavelength-nm 550 --set layers.0.thickness_um=-3",
+                                   60);
     EXPECT_EQ(outcome.exit_code, 3);
     EXPECT_THAT(outcome.err, HasSubstr("thickness_um = -3 is out of range"));
 }

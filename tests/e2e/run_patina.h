@@ -1,8 +1,6 @@
 #pragma once
 // Runs the built program as a user would.
 
-#include <sys/wait.h>
-
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -10,6 +8,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace patina::test {
@@ -35,7 +34,8 @@ class PatinaTest : public ::testing::Test {
   protected:
     PatinaTest() {
         const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::temp_directory_path() / (std::string("patina_") + info->test_suite_name() + "_" + info->name() + "_" + std::to_string(::getpid()));
+        folder_ = fs::temp_directory_path() / (std::string("patina_") + info->test_suite_name() + "_" + info->name() +
+                                               "_" + std::to_string(::getpid()));
         fs::create_directories(folder_);
     }
     ~PatinaTest() override { fs::remove_all(folder_); }
@@ -46,8 +46,9 @@ class PatinaTest : public ::testing::Test {
     // `arguments` is a shell word list; `limit_s` turns a hang into a failure.
     Outcome patina(const std::string& arguments, int limit_s = 300) const {
         const fs::path out = folder_ / ".stdout", err = folder_ / ".stderr";
-        const std::string command = "cd '" + folder_.string() + "' && timeout " + std::to_string(limit_s) + " '" + PATINA_BINARY + "' " + arguments + " >'" +
-                                    out.string() + "' 2>'" + err.string() + "'";
+        const std::string command = "cd '" + folder_.string() + "' && timeout " + std::to_string(limit_s) + " '" +
+                                    PATINA_BINARY + "' " + arguments + " >'" + out.string() + "' 2>'" + err.string() +
+                                    "'";
         const int status = std::system(command.c_str());
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
     }

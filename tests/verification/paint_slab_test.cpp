@@ -1,5 +1,6 @@
-// A composition recipe against an independent Monte Carlo: pins the sign that no published table tests, the Mie b2 against
-// the retardance of total internal reflection. With b2 flipped, V under the interface is wrong by more than itself.
+// A composition recipe against an independent Monte Carlo: pins the sign that no published table tests, the Mie b2
+// against the retardance of total internal reflection. With b2 flipped, V under the interface is wrong by more than
+// itself.
 
 #include <fmt/format.h>
 
@@ -45,7 +46,8 @@ void expect_slab(bool interface, std::span<const paint_slab::Row> rows, const st
         for (const jobs::FieldValue& value : result.radiance) {
             if (!value.upward || value.theta_deg != row.theta_o_deg || value.phi_deg != row.phi_deg) continue;
             const optics::Stokes brdf = value.stokes / (pi * std::cos(radians(45.0)));
-            // 3 sigma of the reference, plus the 1e-5 of I that its 512 size classes leave (narrow resonances of the pigment).
+            // 3 sigma of the reference, plus the 1e-5 of I that its 512 size classes leave (narrow resonances of the
+            // pigment).
             for (int i = 0; i < 4; ++i)
                 EXPECT_NEAR(brdf[i], row.stokes[i], 3.0 * row.sigma[i] + 1e-5 * row.stokes[0])
                     << solver << " theta " << row.theta_o_deg << " phi " << row.phi_deg << " component " << i;
@@ -54,8 +56,12 @@ void expect_slab(bool interface, std::span<const paint_slab::Row> rows, const st
     EXPECT_EQ(compared, 25);
 }
 
-TEST(PaintSlab, IndexMatchedFollowsTheMonteCarlo) { expect_slab(false, paint_slab::case_a, "doubling"); }
-TEST(PaintSlab, UnderAnInterfaceFollowsTheMonteCarlo) { expect_slab(true, paint_slab::case_b, "doubling"); }
+TEST(PaintSlab, IndexMatchedFollowsTheMonteCarlo) {
+    expect_slab(false, paint_slab::case_a, "doubling");
+}
+TEST(PaintSlab, UnderAnInterfaceFollowsTheMonteCarlo) {
+    expect_slab(true, paint_slab::case_b, "doubling");
+}
 
 }  // namespace
 }  // namespace patina::test

@@ -3,10 +3,10 @@
 #include <map>
 #include <tuple>
 
-#include "patina/jobs/validation/natraj2009_data.h"
 #include "rt_problems.h"
 
 #include "patina/core/constants.h"
+#include "patina/jobs/validation/natraj2009_data.h"
 
 namespace patina::rt {
 namespace {

@@ -1,9 +1,9 @@
 // Every printed value of Siewert (2000), problem IIA, by every registered solver.
 
 #include "rt_problems.h"
-#include "patina/jobs/validation/siewert2000_data.h"
 
 #include "patina/core/constants.h"
+#include "patina/jobs/validation/siewert2000_data.h"
 
 namespace patina::rt {
 namespace {

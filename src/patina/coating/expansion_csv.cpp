@@ -32,7 +32,8 @@ std::array<double, 7> parse_row(const std::string& line, const SourceLocation& w
             throw input_error(here, "a finite number is expected", fmt::format("the columns are {}", header));
         const bool last = column + 1 == row.size();
         if (last ? stop != end : (stop == end || *stop != ','))
-            throw input_error(here, "a row has seven numbers separated by commas", fmt::format("the columns are {}", header));
+            throw input_error(here, "a row has seven numbers separated by commas",
+                              fmt::format("the columns are {}", header));
         at = stop + 1;
     }
     return row;
@@ -50,26 +51,31 @@ optics::ExpansionCoefficients read_expansion_csv(const std::filesystem::path& pa
         line = without_blanks(line);
         if (line.empty() || line.front() == '#') continue;
         if (!header_seen) {
-            if (line != header) throw input_error(where, "the header line is missing", fmt::format("it reads {}", header));
+            if (line != header)
+                throw input_error(where, "the header line is missing", fmt::format("it reads {}", header));
             header_seen = true;
             continue;
         }
         const std::array<double, 7> row = parse_row(line, where);
         const int expected = static_cast<int>(c.alpha1.size());
         if (row[0] != expected)
-            throw input_error(where, fmt::format("l = {:g} where l = {} is expected", row[0], expected), "orders count up from 0");
+            throw input_error(where, fmt::format("l = {:g} where l = {} is expected", row[0], expected),
+                              "orders count up from 0");
         if (expected > largest_order) throw input_error(where, fmt::format("more than {} orders", largest_order));
         std::vector<double>* columns[] = {&c.alpha1, &c.alpha2, &c.alpha3, &c.alpha4, &c.beta1, &c.beta2};
         for (size_t i = 0; i < std::size(columns); ++i) columns[i]->push_back(row[i + 1]);
     }
-    if (c.alpha1.empty()) throw input_error({path.string()}, "no coefficients", fmt::format("expected the header {} and a row an order", header));
+    if (c.alpha1.empty())
+        throw input_error({path.string()}, "no coefficients",
+                          fmt::format("expected the header {} and a row an order", header));
     if (std::abs(c.alpha1[0] - 1.0) > 1e-6)
         throw input_error({path.string()}, fmt::format("alpha1 of l = 0 is {:g}", c.alpha1[0]),
                           "the scattering matrix is normalised so that it is 1");
     for (size_t l = 0; l < c.alpha1.size(); ++l)
         if (std::abs(c.alpha1[l]) > (2.0 * static_cast<double>(l) + 1.0) * (1 + 1e-6))
-            throw input_error({path.string()}, fmt::format("alpha1 of l = {} is {:g}", l, c.alpha1[l]),
-                              fmt::format("a phase function that is nowhere negative has at most 2l+1 = {}", 2 * l + 1));
+            throw input_error(
+                {path.string()}, fmt::format("alpha1 of l = {} is {:g}", l, c.alpha1[l]),
+                fmt::format("a phase function that is nowhere negative has at most 2l+1 = {}", 2 * l + 1));
     return c;
 }
 

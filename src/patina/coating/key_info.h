@@ -12,9 +12,10 @@ enum class KeyType { number, integer, text, boolean, table, array };
 struct KeyInfo {
     std::string_view name;
     KeyType type = KeyType::number;
-    std::string_view unit;       // "um", "nm", "1" for a pure number, "" for none
-    std::string_view fallback;   // the default as written in a recipe, "" when the key is required or its absence has a meaning
-    std::string_view doc;        // one line
+    std::string_view unit;  // "um", "nm", "1" for a pure number, "" for none
+    std::string_view
+        fallback;  // the default as written in a recipe, "" when the key is required or its absence has a meaning
+    std::string_view doc;  // one line
     double min = -std::numeric_limits<double>::infinity();
     double max = std::numeric_limits<double>::infinity();
     bool min_excluded = false;

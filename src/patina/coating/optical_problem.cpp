@@ -12,8 +12,8 @@ namespace {
 
 using optics::OpticalConstants;
 
-// From this total volume fraction on, `packing = "auto"` takes the interference between particles into account: there it
-// changes the transport cross section of a white pigment by a twentieth (docs/theory.md).
+// From this total volume fraction on, `packing = "auto"` takes the interference between particles into account: there
+// it changes the transport cross section of a white pigment by a twentieth (docs/theory.md).
 constexpr double automatic_packing_from = 0.05;
 constexpr double strongest_binder_absorption = 1e-4;
 
@@ -25,8 +25,10 @@ class ProblemBuilder {
 
     OpticalProblem build() {
         for (const RecipeLayer& layer : recipe_.layers)
-            result_.problem.layers.push_back(std::visit([&](const auto& content) { return layer_of(content); }, layer.content));
-        result_.problem.refractive_index_above = recipe_.has_interface ? 1.0 : result_.problem.layers.front().refractive_index;
+            result_.problem.layers.push_back(
+                std::visit([&](const auto& content) { return layer_of(content); }, layer.content));
+        result_.problem.refractive_index_above =
+            recipe_.has_interface ? 1.0 : result_.problem.layers.front().refractive_index;
         result_.problem.base = std::visit([&](const auto& base) { return base_of(base); }, recipe_.base);
         return std::move(result_);
     }
@@ -39,17 +41,22 @@ class ProblemBuilder {
     rt::Layer layer_of(const Composition& layer) {
         const std::complex<double> host = index_of(layer.binder);
         if (host.imag() > strongest_binder_absorption)
-            throw Error(ErrorKind::input, fmt::format("binder {}: k = {:g} at {:g} nm (scattering in so absorbing a host is not covered; at most {:g})",
-                                                      layer.binder.name(), host.imag(), wavelength_nm_, strongest_binder_absorption));
+            throw Error(
+                ErrorKind::input,
+                fmt::format(
+                    "binder {}: k = {:g} at {:g} nm (scattering in so absorbing a host is not covered; at most {:g})",
+                    layer.binder.name(), host.imag(), wavelength_nm_, strongest_binder_absorption));
         double total_fraction = 0.0;
         for (const Pigment& pigment : layer.pigments) total_fraction += pigment.volume_fraction;
 
         std::vector<optics::MixtureComponent> components;
-        for (const Pigment& pigment : layer.pigments) components.push_back(component_of(pigment, host.real(), packing_of(layer, total_fraction)));
+        for (const Pigment& pigment : layer.pigments)
+            components.push_back(component_of(pigment, host.real(), packing_of(layer, total_fraction)));
         const optics::ScatteringMedium particles = optics::mix(components);
 
         // The binder absorbs in the volume it fills: 4 pi k / lambda per length.
-        const double binder_absorption_per_um = 4.0 * pi * host.imag() / (1e-3 * wavelength_nm_) * (1.0 - total_fraction);
+        const double binder_absorption_per_um =
+            4.0 * pi * host.imag() / (1e-3 * wavelength_nm_) * (1.0 - total_fraction);
         const double extinction_per_um = particles.extinction_per_um + binder_absorption_per_um;
         const double albedo = extinction_per_um > 0.0 ? particles.scattering_per_um / extinction_per_um : 0.0;
         return {extinction_per_um * layer.thickness_um, std::min(1.0, albedo), particles.expansion, host.real()};
@@ -70,8 +77,9 @@ class ProblemBuilder {
         if (layer.packing == Packing::automatic && total_fraction <= automatic_packing_from) return 0.0;
         if (total_fraction == 0.0) return 0.0;
         const double fraction = std::min(total_fraction, optics::max_packing_fraction);
-        result_.notes.push_back(fmt::format("particles at a volume fraction of {:g} interfere (Percus-Yevick structure factor{})", total_fraction,
-                                            fraction < total_fraction ? fmt::format(" of {}, random close packing", fraction) : ""));
+        result_.notes.push_back(fmt::format(
+            "particles at a volume fraction of {:g} interfere (Percus-Yevick structure factor{})", total_fraction,
+            fraction < total_fraction ? fmt::format(" of {}, random close packing", fraction) : ""));
         return fraction;
     }
 
@@ -81,10 +89,12 @@ class ProblemBuilder {
 
     std::complex<double> index_of(const OpticalConstants& material) {
         if (!material.covers(wavelength_nm_) && recipe_.extrapolation == optics::Extrapolation::hold)
-            result_.notes.push_back(fmt::format("{} is measured from {:g} to {:g} nm; its ends are held outside", material.name(),
-                                                material.wavelength_min_nm(), material.wavelength_max_nm()));
+            result_.notes.push_back(fmt::format("{} is measured from {:g} to {:g} nm; its ends are held outside",
+                                                material.name(), material.wavelength_min_nm(),
+                                                material.wavelength_max_nm()));
         result_.citations.push_back(fmt::format("{}: {}", material.name(), material.citation()));
-        if (!material.k_known()) result_.notes.push_back(fmt::format("{}: the source gives no k, taken as 0", material.name()));
+        if (!material.k_known())
+            result_.notes.push_back(fmt::format("{}: the source gives no k, taken as 0", material.name()));
         return material.at(wavelength_nm_, recipe_.extrapolation);
     }
 

@@ -59,7 +59,7 @@ struct MetalBase {
 struct Recipe {
     std::string title;
     optics::Extrapolation extrapolation = optics::Extrapolation::refuse;
-    bool has_interface = false;  // a Fresnel interface to air on top; else the top is index matched
+    bool has_interface = false;       // a Fresnel interface to air on top; else the top is index matched
     std::vector<RecipeLayer> layers;  // top to bottom, at least one; those of a base recipe are the last
     std::variant<NoBase, LambertianBase, MetalBase> base;
     std::string text;  // as read, after --set, for provenance

@@ -44,7 +44,8 @@ optics::OpticalConstants read_material(const TableReader& reader, std::string_vi
 
     static constexpr std::array keys{
         KeyInfo{"n", KeyType::number, "1", "", "real part of the refractive index", 1e-3, 100.0},
-        KeyInfo{"k", KeyType::number, "1", "0", "imaginary part of the refractive index, absorbing when positive", 0.0, 100.0}};
+        KeyInfo{"k", KeyType::number, "1", "0", "imaginary part of the refractive index, absorbing when positive", 0.0,
+                100.0}};
     const TableReader index(*node->as_table(), keys, reader.path_of(key), context.file);
     return optics::OpticalConstants::constant({index.number("n"), index.optional_number("k").value_or(0.0)});
 }
@@ -52,16 +53,20 @@ optics::OpticalConstants read_material(const TableReader& reader, std::string_vi
 Pigment read_pigment(const toml::table& table, const std::string& path, const Context& context) {
     const TableReader reader(table, recipe_keys("[[layers.pigments]]"), path, context.file);
     const toml::table* size = reader.table("size");
-    if (!size) throw input_error(reader.where(), fmt::format("{} is missing", reader.path_of("size")), "", "write size = { distribution = \"mono\", radius_um = 0.2 }");
+    if (!size)
+        throw input_error(reader.where(), fmt::format("{} is missing", reader.path_of("size")), "",
+                          "write size = { distribution = \"mono\", radius_um = 0.2 }");
     return {read_material(reader, "material", context), reader.number("volume_fraction"),
             read_size_distribution(TableReader(*size, recipe_keys("size"), reader.path_of("size"), context.file))};
 }
 
 Composition read_composition(const TableReader& reader, const Context& context) {
     static constexpr std::string_view optical_keys[] = {"single_scattering_albedo", "expansion", "refractive_index"};
-    reader.forbid(optical_keys, "the layer is given by its composition; an optical layer starts with optical_thickness");
+    reader.forbid(optical_keys,
+                  "the layer is given by its composition; an optical layer starts with optical_thickness");
 
-    Composition composition{reader.number("thickness_um"), read_material(reader, "binder", context), {}, Packing::automatic, {}};
+    Composition composition{
+        reader.number("thickness_um"), read_material(reader, "binder", context), {}, Packing::automatic, {}};
     const std::string packing = reader.choice("packing", {"auto", "percus-yevick", "independent"});
     if (packing == "percus-yevick") composition.packing = Packing::percus_yevick;
     if (packing == "independent") composition.packing = Packing::independent;
@@ -71,7 +76,8 @@ Composition read_composition(const TableReader& reader, const Context& context) 
     double total_fraction = 0.0;
     const std::vector<const toml::table*> pigments = reader.tables("pigments");
     for (size_t i = 0; i < pigments.size(); ++i) {
-        composition.pigments.push_back(read_pigment(*pigments[i], fmt::format("{}.{}", reader.path_of("pigments"), i), context));
+        composition.pigments.push_back(
+            read_pigment(*pigments[i], fmt::format("{}.{}", reader.path_of("pigments"), i), context));
         total_fraction += composition.pigments.back().volume_fraction;
     }
     if (total_fraction > densest_packing)
@@ -81,12 +87,17 @@ Composition read_composition(const TableReader& reader, const Context& context) 
 }
 
 OpticalLayer read_optical_layer(const TableReader& reader, bool is_lowest, const Context& context) {
-    static constexpr std::string_view composition_keys[] = {"thickness_um", "binder", "pigments", "packing", "volume_solids"};
+    static constexpr std::string_view composition_keys[] = {"thickness_um", "binder", "pigments", "packing",
+                                                            "volume_solids"};
     reader.forbid(composition_keys, "the layer is given in optical terms (it has optical_thickness)");
 
-    OpticalLayer layer{reader.number("optical_thickness"), reader.number("single_scattering_albedo"), {}, reader.optional_number("refractive_index").value_or(1.0)};
+    OpticalLayer layer{reader.number("optical_thickness"),
+                       reader.number("single_scattering_albedo"),
+                       {},
+                       reader.optional_number("refractive_index").value_or(1.0)};
     if (std::isinf(layer.optical_thickness) && !is_lowest)
-        throw input_error(reader.where("optical_thickness"), "an infinite layer hides what lies below it", "only the lowest layer may be infinite");
+        throw input_error(reader.where("optical_thickness"), "an infinite layer hides what lies below it",
+                          "only the lowest layer may be infinite");
     const std::string file = reader.text("expansion");
     try {
         layer.expansion = read_expansion_csv(context.folder / file);
@@ -107,11 +118,13 @@ spectral::Spectrum read_reflectance(const TableReader& reader, const Context& co
     const toml::node* node = reader.node("reflectance");
     if (!node || !node->is_string()) return spectral::Spectrum(reader.number("reflectance"));
     const fs::path file = context.folder / *node->value<std::string>();
-    if (!fs::exists(file)) throw input_error(reader.where("reflectance"), fmt::format("{}: file not found", file.string()));
+    if (!fs::exists(file))
+        throw input_error(reader.where("reflectance"), fmt::format("{}: file not found", file.string()));
     spectral::Spectrum spectrum = spectral::read_spectrum(file, spectral::Outside::hold);
     for (const double value : spectrum.values())
         if (!(value >= 0.0 && value <= 1.0))
-            throw input_error({file.string()}, fmt::format("a reflectance of {:g}", value), "reflectances lie between 0 and 1");
+            throw input_error({file.string()}, fmt::format("a reflectance of {:g}", value),
+                              "reflectances lie between 0 and 1");
     return spectrum;
 }
 
@@ -127,15 +140,19 @@ void append_recipe(const TableReader& reader, const Context& context, Recipe& re
     const fs::path file = context.folder / reader.text("recipe");
     if (!fs::exists(file)) throw input_error(reader.where("recipe"), fmt::format("{}: file not found", file.string()));
     if (context.depth >= most_nested_recipes)
-        throw input_error(reader.where("recipe"), fmt::format("{} recipes lie on each other", most_nested_recipes + 1), "does one lie on itself?");
+        throw input_error(reader.where("recipe"), fmt::format("{} recipes lie on each other", most_nested_recipes + 1),
+                          "does one lie on itself?");
     const Recipe below = read_recipe_at(file, context.depth + 1);
     for (const RecipeLayer& layer : recipe.layers)
-        if (const auto* optical = std::get_if<OpticalLayer>(&layer.content); optical && std::isinf(optical->optical_thickness))
-            throw input_error(reader.where("recipe"), "an infinite layer hides what lies below it", "", "leave the base out");
+        if (const auto* optical = std::get_if<OpticalLayer>(&layer.content);
+            optical && std::isinf(optical->optical_thickness))
+            throw input_error(reader.where("recipe"), "an infinite layer hides what lies below it", "",
+                              "leave the base out");
     recipe.layers.insert(recipe.layers.end(), below.layers.begin(), below.layers.end());
     recipe.base = below.base;
     if (recipe.layers.size() > most_layers)
-        throw input_error(reader.where("recipe"), fmt::format("{} layers", recipe.layers.size()), fmt::format("at most {} make sense", most_layers));
+        throw input_error(reader.where("recipe"), fmt::format("{} layers", recipe.layers.size()),
+                          fmt::format("at most {} make sense", most_layers));
 
     // Keep what was read, for provenance.
     std::istringstream lines(below.text);
@@ -146,7 +163,8 @@ void append_recipe(const TableReader& reader, const Context& context, Recipe& re
 void read_base(const toml::table* table, const Context& context, Recipe& recipe) {
     if (!table) return;
     const TableReader reader(*table, recipe_keys("[base]"), "base", context.file);
-    static constexpr std::string_view metal_keys[] = {"material", "alpha", "distribution"}, reflectance_key[] = {"reflectance"}, recipe_key[] = {"recipe"};
+    static constexpr std::string_view metal_keys[] = {"material", "alpha", "distribution"},
+                                      reflectance_key[] = {"reflectance"}, recipe_key[] = {"recipe"};
     static constexpr std::string_view distribution_key[] = {"distribution"};
     const std::string type = reader.choice("type", {"none", "lambertian", "metal", "recipe"});
     if (type != "metal") reader.forbid(metal_keys, "only a metal base has a material and facets");
@@ -173,7 +191,8 @@ toml::table parse_toml(const std::string& text, const std::string& name) {
         return toml::parse(text, name);
     } catch (const toml::parse_error& error) {
         const toml::source_position at = error.source().begin;
-        throw input_error({name, static_cast<int>(at.line), static_cast<int>(at.column)}, "not TOML", error.description());
+        throw input_error({name, static_cast<int>(at.line), static_cast<int>(at.column)}, "not TOML",
+                          error.description());
     }
 }
 
@@ -189,7 +208,8 @@ toml::node* step_into(toml::node& node, const std::string& step) {
 void assign(toml::table& root, const std::string& setting) {
     const size_t equals = setting.find('=');
     if (equals == std::string::npos || equals == 0)
-        throw Error(ErrorKind::usage, fmt::format("--set {}: write key=value, as in layers.0.thickness_um=30", setting));
+        throw Error(ErrorKind::usage,
+                    fmt::format("--set {}: write key=value, as in layers.0.thickness_um=30", setting));
     std::vector<std::string> steps;
     std::istringstream path(setting.substr(0, equals));
     for (std::string step; std::getline(path, step, '.');) steps.push_back(step);
@@ -200,7 +220,8 @@ void assign(toml::table& root, const std::string& setting) {
         if (!node) throw Error(ErrorKind::usage, fmt::format("--set {}: the recipe has no \"{}\"", setting, steps[i]));
     }
     toml::table* parent = node->as_table();
-    if (!parent) throw Error(ErrorKind::usage, fmt::format("--set {}: \"{}\" is not a key of a table", setting, steps.back()));
+    if (!parent)
+        throw Error(ErrorKind::usage, fmt::format("--set {}: \"{}\" is not a key of a table", setting, steps.back()));
 
     const std::string value = setting.substr(equals + 1);
     const auto insert = [&](const std::string& toml_value) {
@@ -223,17 +244,23 @@ Recipe parse(const std::string& text, const Context& context, const std::vector<
     Recipe recipe;
     recipe.path = name;
     recipe.title = reader.optional_text("title").value_or("");
-    recipe.extrapolation = reader.choice("extrapolation", {"refuse", "hold"}) == "hold" ? optics::Extrapolation::hold : optics::Extrapolation::refuse;
+    recipe.extrapolation = reader.choice("extrapolation", {"refuse", "hold"}) == "hold" ? optics::Extrapolation::hold
+                                                                                        : optics::Extrapolation::refuse;
     read_interface(reader.table("interface"), context, recipe);
 
     const std::vector<const toml::table*> layers = reader.tables("layers");
-    if (layers.empty()) throw input_error(SourceLocation{name}, "a recipe needs at least one [[layers]]", "", "patina new paint NAME writes a commented starter");
-    if (layers.size() > most_layers) throw input_error(reader.where("layers"), fmt::format("{} layers", layers.size()), fmt::format("at most {} make sense", most_layers));
+    if (layers.empty())
+        throw input_error(SourceLocation{name}, "a recipe needs at least one [[layers]]", "",
+                          "patina new paint NAME writes a commented starter");
+    if (layers.size() > most_layers)
+        throw input_error(reader.where("layers"), fmt::format("{} layers", layers.size()),
+                          fmt::format("at most {} make sense", most_layers));
     for (size_t i = 0; i < layers.size(); ++i)
         recipe.layers.push_back(read_layer(*layers[i], fmt::format("layers.{}", i), i + 1 == layers.size(), context));
     if (const std::optional<double> volume_solids = reader.optional_number("volume_solids"))
         for (RecipeLayer& layer : recipe.layers)
-            if (Composition* composition = std::get_if<Composition>(&layer.content); composition && !composition->volume_solids)
+            if (Composition* composition = std::get_if<Composition>(&layer.content);
+                composition && !composition->volume_solids)
                 composition->volume_solids = volume_solids;
 
     std::ostringstream written;
@@ -249,7 +276,8 @@ Recipe read_recipe_at(const fs::path& path, int depth) {
 
 }  // namespace
 
-Recipe parse_recipe(const std::string& text, const std::string& name, const fs::path& folder, const std::vector<std::string>& settings) {
+Recipe parse_recipe(const std::string& text, const std::string& name, const fs::path& folder,
+                    const std::vector<std::string>& settings) {
     return parse(text, {name, folder}, settings);
 }
 
@@ -258,7 +286,9 @@ Recipe read_recipe(const fs::path& path, const std::vector<std::string>& setting
 }
 
 bool Recipe::is_wavelength_independent() const {
-    const bool optical = std::all_of(layers.begin(), layers.end(), [](const RecipeLayer& layer) { return std::holds_alternative<OpticalLayer>(layer.content); });
+    const bool optical = std::all_of(layers.begin(), layers.end(), [](const RecipeLayer& layer) {
+        return std::holds_alternative<OpticalLayer>(layer.content);
+    });
     if (!optical || std::holds_alternative<MetalBase>(base)) return false;
     const LambertianBase* lambertian = std::get_if<LambertianBase>(&base);
     return !lambertian || lambertian->reflectance.is_uniform();

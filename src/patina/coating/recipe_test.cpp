@@ -46,7 +46,8 @@ TEST(Recipe, ReadsEveryPart) {
 
 TEST(Recipe, SettingsReplaceAndAddKeys) {
     const Recipe recipe = parse_recipe(two_layers, "r.toml", ".",
-                                       {"layers.1.thickness_um=9", "layers.1.pigments.0.volume_fraction=0.03", R"(base={ type = "none" })", "title=plain words"});
+                                       {"layers.1.thickness_um=9", "layers.1.pigments.0.volume_fraction=0.03",
+                                        R"(base={ type = "none" })", "title=plain words"});
     EXPECT_EQ(std::get<Composition>(recipe.layers[1].content).thickness_um, 9.0);
     EXPECT_EQ(std::get<Composition>(recipe.layers[1].content).pigments[0].volume_fraction, 0.03);
     EXPECT_TRUE(std::holds_alternative<NoBase>(recipe.base));
@@ -90,7 +91,8 @@ TEST(OpticalProblem, OpticalThicknessIsNumberDensityTimesCrossSectionTimesDepth)
 }
 
 TEST(OpticalProblem, AnIndexMatchedTopHasTheIndexOfTheFirstLayerAbove) {
-    const rt::Problem problem = optical_problem(parse_recipe(two_layers, "r.toml", ".", {R"(base={ type = "none" })"}), 500.0).problem;
+    const rt::Problem problem =
+        optical_problem(parse_recipe(two_layers, "r.toml", ".", {R"(base={ type = "none" })"}), 500.0).problem;
     const Recipe without = parse_recipe(two_layers.substr(two_layers.find("[[layers]]")), "r.toml", ".");
     EXPECT_EQ(optical_problem(without, 500.0).problem.refractive_index_above, 1.5);
     EXPECT_TRUE(std::holds_alternative<rt::BlackBase>(problem.base));
@@ -98,12 +100,16 @@ TEST(OpticalProblem, AnIndexMatchedTopHasTheIndexOfTheFirstLayerAbove) {
 
 TEST(OpticalProblem, DensePackingIsReportedAndReducesScattering) {
     const auto at = [](const char* packing) {
-        return optical_problem(parse_recipe(two_layers, "r.toml", ".", {"layers.1.pigments.0.volume_fraction=0.2", std::string("layers.1.packing=") + packing}), 550.0);
+        return optical_problem(
+            parse_recipe(two_layers, "r.toml", ".",
+                         {"layers.1.pigments.0.volume_fraction=0.2", std::string("layers.1.packing=") + packing}),
+            550.0);
     };
     EXPECT_TRUE(at("independent").notes.empty());
     ASSERT_EQ(at("auto").notes.size(), 1u);
     EXPECT_THAT(at("auto").notes[0], HasSubstr("Percus-Yevick"));
-    EXPECT_LT(at("auto").problem.layers[1].optical_thickness, 0.9 * at("independent").problem.layers[1].optical_thickness);
+    EXPECT_LT(at("auto").problem.layers[1].optical_thickness,
+              0.9 * at("independent").problem.layers[1].optical_thickness);
 }
 
 TEST(OpticalProblem, ExtrapolationIsRefusedUnlessAskedForAndThenFlagged) {
@@ -116,13 +122,16 @@ volume_fraction = 0.01
 size = { distribution = "mono", radius_um = 0.1 }
 )";
     EXPECT_THROW(optical_problem(parse_recipe(text, "r.toml", "."), 400.0), Error);
-    const OpticalProblem held = optical_problem(parse_recipe("extrapolation = \"hold\"\n" + text, "r.toml", "."), 400.0);
+    const OpticalProblem held =
+        optical_problem(parse_recipe("extrapolation = \"hold\"\n" + text, "r.toml", "."), 400.0);
     EXPECT_THAT(held.notes, ::testing::Contains(HasSubstr("held outside")));
 }
 
 TEST(Recipe, ReadsARoughMetal) {
-    const Recipe recipe = parse_recipe("[[layers]]\nthickness_um = 10\nbinder = { n = 1.5 }\n"
-                                       "[base]\ntype = \"metal\"\nmaterial = { n = 1, k = 6 }\nalpha = 0.3\ndistribution = \"beckmann\"\n", "r.toml", ".");
+    const Recipe recipe = parse_recipe(
+        "[[layers]]\nthickness_um = 10\nbinder = { n = 1.5 }\n"
+        "[base]\ntype = \"metal\"\nmaterial = { n = 1, k = 6 }\nalpha = 0.3\ndistribution = \"beckmann\"\n",
+        "r.toml", ".");
     const rt::Problem problem = optical_problem(recipe, 550.0).problem;
     EXPECT_EQ(std::get<rt::MetalBase>(problem.base).roughness->alpha, 0.3);
     EXPECT_EQ(std::get<rt::MetalBase>(problem.base).roughness->distribution, rt::FacetDistribution::beckmann);
@@ -147,8 +156,11 @@ TEST(Recipe, RoughSurfacesThatCannotBeAreErrors) {
 TEST(Recipe, LiesOnAnotherRecipe) {
     const std::filesystem::path folder = ::testing::TempDir();
     std::ofstream(folder / "below.toml") << two_layers;
-    std::ofstream(folder / "self.toml") << "[[layers]]\nthickness_um = 10\nbinder = { n = 1.5 }\n[base]\ntype = \"recipe\"\nrecipe = \"self.toml\"\n";
-    const std::string top = "[interface]\ntype = \"smooth\"\n[[layers]]\nthickness_um = 10\nbinder = { n = 1.6 }\n[base]\ntype = \"recipe\"\nrecipe = \"below.toml\"\n";
+    std::ofstream(folder / "self.toml")
+        << "[[layers]]\nthickness_um = 10\nbinder = { n = 1.5 }\n[base]\ntype = \"recipe\"\nrecipe = \"self.toml\"\n";
+    const std::string top =
+        "[interface]\ntype = \"smooth\"\n[[layers]]\nthickness_um = 10\nbinder = { n = 1.6 }\n[base]\ntype = "
+        "\"recipe\"\nrecipe = \"below.toml\"\n";
     const Recipe recipe = parse_recipe(top, "r.toml", folder);
     ASSERT_EQ(recipe.layers.size(), 3u);
     EXPECT_EQ(std::get<LambertianBase>(recipe.base).reflectance(500.0), 0.25);

@@ -1,9 +1,9 @@
 #include "patina/coating/table_reader.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
-#include <cmath>
 
 #include "patina/core/contract.h"
 
@@ -13,13 +13,19 @@ namespace {
 
 const char* type_name(const toml::node& node) {
     switch (node.type()) {
-        case toml::node_type::table: return "a table";
-        case toml::node_type::array: return "an array";
-        case toml::node_type::string: return "a string";
+        case toml::node_type::table:
+            return "a table";
+        case toml::node_type::array:
+            return "an array";
+        case toml::node_type::string:
+            return "a string";
         case toml::node_type::integer:
-        case toml::node_type::floating_point: return "a number";
-        case toml::node_type::boolean: return "a boolean";
-        default: return "a date";
+        case toml::node_type::floating_point:
+            return "a number";
+        case toml::node_type::boolean:
+            return "a boolean";
+        default:
+            return "a date";
     }
 }
 
@@ -38,7 +44,8 @@ std::string range_text(const KeyInfo& key) {
 TableReader::TableReader(const toml::table& table, std::span<const KeyInfo> keys, std::string path, std::string file)
     : table_(table), keys_(keys), path_(std::move(path)), file_(std::move(file)) {
     for (const auto& [key, value] : table_) {
-        const bool known = std::any_of(keys_.begin(), keys_.end(), [&](const KeyInfo& info) { return info.name == key.str(); });
+        const bool known =
+            std::any_of(keys_.begin(), keys_.end(), [&](const KeyInfo& info) { return info.name == key.str(); });
         if (known) continue;
         std::vector<std::string> names;
         for (const KeyInfo& info : keys_) names.emplace_back(info.name);
@@ -66,7 +73,8 @@ double TableReader::checked_number(const toml::node& node, const KeyInfo& key) c
     const bool finite_enough = std::isfinite(*value) || (key.infinite_allowed && *value > 0);
     if (above && *value <= key.max && finite_enough) return *value;
 
-    const std::string nearest = std::isnan(*value) ? "" : *value > key.max ? fmt::format("; the nearest legal value is {:g}", key.max)
+    const std::string nearest = std::isnan(*value)  ? ""
+                                : *value > key.max  ? fmt::format("; the nearest legal value is {:g}", key.max)
                                 : !key.min_excluded ? fmt::format("; the nearest legal value is {:g}", key.min)
                                                     : "";
     throw input_error(location(node.source()), fmt::format("{} = {:g} is out of range", path_of(key.name), *value),
@@ -128,7 +136,9 @@ SourceLocation TableReader::where(std::string_view key) const {
     return value ? location(value->source()) : where();
 }
 
-SourceLocation TableReader::where() const { return location(table_.source()); }
+SourceLocation TableReader::where() const {
+    return location(table_.source());
+}
 
 void TableReader::forbid(std::span<const std::string_view> others, std::string_view because) const {
     for (const std::string_view other : others) {
@@ -139,7 +149,8 @@ void TableReader::forbid(std::span<const std::string_view> others, std::string_v
 
 void TableReader::wrong_type(std::string_view key, std::string_view expected) const {
     const toml::node* value = table_.get(key);
-    throw input_error(where(key), fmt::format("{} must be a {}", path_of(key), expected), value ? fmt::format("it is {}", type_name(*value)) : "");
+    throw input_error(where(key), fmt::format("{} must be a {}", path_of(key), expected),
+                      value ? fmt::format("it is {}", type_name(*value)) : "");
 }
 
 const KeyInfo& TableReader::declared(std::string_view key) const {

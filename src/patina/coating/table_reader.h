@@ -38,7 +38,9 @@ class TableReader {
     // Where a key stands, or the table itself when it is absent.
     SourceLocation where(std::string_view key) const;
     SourceLocation where() const;
-    std::string path_of(std::string_view key) const { return path_.empty() ? std::string(key) : path_ + "." + std::string(key); }
+    std::string path_of(std::string_view key) const {
+        return path_.empty() ? std::string(key) : path_ + "." + std::string(key);
+    }
 
     // Throws for the first of `others` that is present: "key" means nothing beside "because".
     void forbid(std::span<const std::string_view> others, std::string_view because) const;

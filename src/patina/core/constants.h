@@ -8,7 +8,11 @@ namespace patina {
 inline constexpr double pi = std::numbers::pi;
 inline constexpr double degrees_per_radian = 180.0 / pi;
 
-constexpr double radians(double degrees) { return degrees / degrees_per_radian; }
-constexpr double degrees(double radians) { return radians * degrees_per_radian; }
+constexpr double radians(double degrees) {
+    return degrees / degrees_per_radian;
+}
+constexpr double degrees(double radians) {
+    return radians * degrees_per_radian;
+}
 
 }  // namespace patina

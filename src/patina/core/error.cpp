@@ -1,10 +1,10 @@
 #include "patina/core/error.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <numeric>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace patina {
 
@@ -26,7 +26,8 @@ size_t edit_distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
-std::string compose(std::string_view where, std::string_view problem, std::string_view why, std::string_view suggestion) {
+std::string compose(std::string_view where, std::string_view problem, std::string_view why,
+                    std::string_view suggestion) {
     std::string message;
     if (!where.empty()) message += fmt::format("{}: ", where);
     message += problem;

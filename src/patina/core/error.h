@@ -13,12 +13,12 @@ namespace patina {
 
 // What went wrong, in the terms of the exit codes of the command line.
 enum class ErrorKind {
-    runtime = 1,      // the machine refused: disk full, file not writable
-    usage = 2,        // the command line makes no sense
-    input = 3,        // a file or a value given by the user is wrong
-    check = 4,        // a check failed, or a solution did not converge
-    not_built = 5,    // a feature this build does not have
-    interrupted = 130 // the user stopped it
+    runtime = 1,       // the machine refused: disk full, file not writable
+    usage = 2,         // the command line makes no sense
+    input = 3,         // a file or a value given by the user is wrong
+    check = 4,         // a check failed, or a solution did not converge
+    not_built = 5,     // a feature this build does not have
+    interrupted = 130  // the user stopped it
 };
 
 // A place in a user's file; line and column count from 1, and 0 means "not known".

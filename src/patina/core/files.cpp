@@ -1,12 +1,12 @@
 #include "patina/core/files.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <sstream>
+
+#include <fmt/format.h>
+#include <unistd.h>
 
 #include "patina/core/error.h"
 
@@ -16,7 +16,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
+fs::path folder_of(const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
 
 }  // namespace
 
@@ -45,7 +47,8 @@ void expect_writable(const fs::path& path) {
     const auto refuse = [&](const std::string& why) {
         return Error(ErrorKind::runtime, fmt::format("{}: cannot be written ({})", path.string(), why));
     };
-    if (!fs::is_directory(folder, ignored)) throw refuse(fmt::format("the folder \"{}\" does not exist", folder.string()));
+    if (!fs::is_directory(folder, ignored))
+        throw refuse(fmt::format("the folder \"{}\" does not exist", folder.string()));
     if (fs::is_directory(path, ignored)) throw refuse("it is a folder");
     if (::access(folder.c_str(), W_OK) != 0) throw refuse(std::strerror(errno));
 }
@@ -69,7 +72,8 @@ void write_file_atomically(const fs::path& path, const std::function<void(const 
     fs::rename(temporary, path, rename_error);
     if (rename_error) {
         fs::remove(temporary, ignored);
-        throw Error(ErrorKind::runtime, fmt::format("{}: cannot be written ({})", path.string(), rename_error.message()));
+        throw Error(ErrorKind::runtime,
+                    fmt::format("{}: cannot be written ({})", path.string(), rename_error.message()));
     }
 }
 
@@ -79,7 +83,8 @@ void write_text_file(const fs::path& path, std::string_view text) {
         stream.write(text.data(), static_cast<std::streamsize>(text.size()));
         stream.close();
         if (!stream)
-            throw Error(ErrorKind::runtime, fmt::format("{}: cannot be written ({})", path.string(), std::strerror(errno)));
+            throw Error(ErrorKind::runtime,
+                        fmt::format("{}: cannot be written ({})", path.string(), std::strerror(errno)));
     });
 }
 

@@ -1,9 +1,9 @@
 #include "patina/core/parallel.h"
 
+#include <memory>
+
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
-
-#include <memory>
 
 #include "patina/core/contract.h"
 

@@ -1,10 +1,10 @@
 #pragma once
 // Parallel loops over oneTBB. Results must not depend on the number of threads: each index writes its own place.
 
+#include <cstddef>
+
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
-
-#include <cstddef>
 
 namespace patina {
 

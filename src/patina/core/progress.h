@@ -20,10 +20,10 @@ class CancelToken {
 
 // A snapshot of work under way.
 struct ProgressReport {
-    std::string stage;        // "solving", "rendering", ...
-    std::int64_t done = 0;    // units finished
-    std::int64_t total = 0;   // units in all; 0 when not known
-    std::string detail;       // "550 nm", "64 spp, noise 0.8 %"
+    std::string stage;       // "solving", "rendering", ...
+    std::int64_t done = 0;   // units finished
+    std::int64_t total = 0;  // units in all; 0 when not known
+    std::string detail;      // "550 nm", "64 spp, noise 0.8 %"
 };
 
 // How long work reports; called from any thread, so the receiver must be thread-safe. Empty = silent.

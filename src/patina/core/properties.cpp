@@ -129,14 +129,15 @@ std::shared_ptr<const Properties> Properties::named_child(std::string_view name)
 void Properties::expect_all_used(const std::vector<std::string>& known) const {
     for (const Entry& entry : entries) {
         if (entry.used) continue;
-        throw input_error(entry.where, fmt::format("unknown property \"{}\" of {} \"{}\"", entry.name, category, type), "",
-                          did_you_mean(entry.name, known));
+        throw input_error(entry.where, fmt::format("unknown property \"{}\" of {} \"{}\"", entry.name, category, type),
+                          "", did_you_mean(entry.name, known));
     }
     for (const Child& child : children) {
         if (child.used) continue;
-        throw input_error(child.node->where,
-                          fmt::format("{} \"{}\" has no use for a {} \"{}\"{}", category, type, child.node->category,
-                                      child.node->type, child.name.empty() ? "" : fmt::format(" named \"{}\"", child.name)));
+        throw input_error(
+            child.node->where,
+            fmt::format("{} \"{}\" has no use for a {} \"{}\"{}", category, type, child.node->category,
+                        child.node->type, child.name.empty() ? "" : fmt::format(" named \"{}\"", child.name)));
     }
 }
 

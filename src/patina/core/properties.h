@@ -1,11 +1,10 @@
 #pragma once
-// A typed tree of named values with the place each came from: what a scene file becomes before anything is built from it.
+// A typed tree of named values with the place each came from: what a scene file becomes before anything is built from
+// it.
 //
 // One node is one plugin of a scene: `<bsdf type="roughconductor" id="gold"> ... </bsdf>`. The reader (io/mitsuba_xml)
-// fills the tree and knows no plugin; the builders (render/) query it and know no XML. Every query marks its key; what was
-// never asked for is reported by expect_all_used(), so that a typo is an error with a line and a column.
-
-#include <Eigen/Dense>
+// fills the tree and knows no plugin; the builders (render/) query it and know no XML. Every query marks its key; what
+// was never asked for is reported by expect_all_used(), so that a typo is an error with a line and a column.
 
 #include <map>
 #include <memory>
@@ -14,6 +13,8 @@
 #include <variant>
 #include <vector>
 
+#include <Eigen/Dense>
+
 #include "patina/core/error.h"
 
 namespace patina {
@@ -21,11 +22,11 @@ namespace patina {
 // A spectrum as written in a scene file, before it is given a meaning (reflectance, radiance, refractive index).
 struct SpectrumSpec {
     enum class Kind {
-        uniform,   // one value at every wavelength: values[0]
-        sampled,   // values at wavelengths_nm (irregular, or regular expanded to its grid)
-        rgb,       // linear sRGB in values[0..2]
-        blackbody, // kelvin in values[0], scale in values[1]
-        file       // a .spd or .csv file, resolved by the reader into wavelengths_nm and values
+        uniform,    // one value at every wavelength: values[0]
+        sampled,    // values at wavelengths_nm (irregular, or regular expanded to its grid)
+        rgb,        // linear sRGB in values[0..2]
+        blackbody,  // kelvin in values[0], scale in values[1]
+        file        // a .spd or .csv file, resolved by the reader into wavelengths_nm and values
     };
     Kind kind = Kind::uniform;
     std::vector<double> wavelengths_nm;
@@ -46,22 +47,24 @@ class Properties {
         mutable bool used = false;
     };
     struct Child {
-        std::string name; // attribute name="..." or "" when not given
+        std::string name;  // attribute name="..." or "" when not given
         std::shared_ptr<const Properties> node;
         mutable bool used = false;
     };
 
-    std::string category; // "bsdf", "shape", "emitter", "sensor", "film", "sampler", "integrator", "texture", "rfilter", ...
-    std::string type;     // the plugin's name
-    std::string id;       // "" when not given
+    std::string
+        category;  // "bsdf", "shape", "emitter", "sensor", "film", "sampler", "integrator", "texture", "rfilter", ...
+    std::string type;  // the plugin's name
+    std::string id;    // "" when not given
     SourceLocation where;
     std::vector<Entry> entries;
-    std::vector<Child> children; // in file order; a <ref> is the very node it names
+    std::vector<Child> children;  // in file order; a <ref> is the very node it names
 
     bool has(std::string_view name) const;
 
     // The value of `name`, converted where nothing is lost (int to float, number to uniform spectrum).
-    // Throws Error(input) at the entry for a value of another type or, without a default, at the node for a missing one.
+    // Throws Error(input) at the entry for a value of another type or, without a default, at the node for a missing
+    // one.
     double number(std::string_view name) const;
     double number(std::string_view name, double fallback) const;
     std::int64_t integer(std::string_view name, std::int64_t fallback) const;
@@ -69,7 +72,8 @@ class Properties {
     std::string string(std::string_view name) const;
     std::string string(std::string_view name, std::string_view fallback) const;
     Eigen::Vector3d vector(std::string_view name, const Eigen::Vector3d& fallback) const;
-    Eigen::Matrix4d transform(std::string_view name, const Eigen::Matrix4d& fallback = Eigen::Matrix4d::Identity()) const;
+    Eigen::Matrix4d transform(std::string_view name,
+                              const Eigen::Matrix4d& fallback = Eigen::Matrix4d::Identity()) const;
     std::optional<SpectrumSpec> spectrum(std::string_view name) const;
 
     // Where `name` stands, for errors about its value; the node's own place when it is absent.
@@ -82,7 +86,8 @@ class Properties {
     // The child with the attribute name="...", null when there is none.
     std::shared_ptr<const Properties> named_child(std::string_view name) const;
 
-    // Throws Error(input) for the first entry or child never asked for; `known` are the legal names, for the suggestion.
+    // Throws Error(input) for the first entry or child never asked for; `known` are the legal names, for the
+    // suggestion.
     void expect_all_used(const std::vector<std::string>& known) const;
 
   private:

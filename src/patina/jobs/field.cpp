@@ -16,10 +16,13 @@ void check_angles(const std::vector<double>& angles_deg, double limit, const cha
     if (angles_deg.empty()) throw Error(ErrorKind::usage, fmt::format("{} needs at least one angle", name));
     for (const double angle : angles_deg)
         if (!(std::abs(angle) <= limit) || (limit == 90.0 && angle < 0.0))
-            throw Error(ErrorKind::usage, fmt::format("{}: {:g} degrees (it must be between {} and {:g})", name, angle, limit == 90.0 ? "0" : "-360", limit));
+            throw Error(ErrorKind::usage, fmt::format("{}: {:g} degrees (it must be between {} and {:g})", name, angle,
+                                                      limit == 90.0 ? "0" : "-360", limit));
 }
 
-double cosine(double angle_deg) { return angle_deg == 90.0 ? 0.0 : std::cos(radians(angle_deg)); }
+double cosine(double angle_deg) {
+    return angle_deg == 90.0 ? 0.0 : std::cos(radians(angle_deg));
+}
 
 double total_optical_thickness(const rt::Problem& problem) {
     double total = 0.0;
@@ -34,11 +37,14 @@ rt::FieldRequest make_request(const FieldJob& job, double optical_thickness) {
     request.optical_depths = job.optical_depths;
     if (request.optical_depths.empty()) {
         request.optical_depths = {0.0};
-        if (std::isfinite(optical_thickness) && optical_thickness > 0.0) request.optical_depths.push_back(optical_thickness);
+        if (std::isfinite(optical_thickness) && optical_thickness > 0.0)
+            request.optical_depths.push_back(optical_thickness);
     }
     for (const double depth : request.optical_depths)
         if (!(depth >= 0.0 && depth <= optical_thickness * (1 + 1e-12)))
-            throw Error(ErrorKind::usage, fmt::format("--tau {:g} lies outside the coating (its optical thickness is {:g})", depth, optical_thickness));
+            throw Error(ErrorKind::usage,
+                        fmt::format("--tau {:g} lies outside the coating (its optical thickness is {:g})", depth,
+                                    optical_thickness));
     std::sort(request.optical_depths.begin(), request.optical_depths.end());
     for (const double theta : job.theta_o_deg) request.mu_o.push_back(cosine(theta));
     for (const double phi : job.phi_deg) request.phi.push_back(radians(phi));
@@ -47,10 +53,14 @@ rt::FieldRequest make_request(const FieldJob& job, double optical_thickness) {
 
 void check_incidence(const FieldJob& job) {
     if (!(job.theta_i_deg >= 0.0 && job.theta_i_deg < 90.0))
-        throw Error(ErrorKind::usage, fmt::format("--theta-i-deg {:g}: it must be at least 0 and below 90", job.theta_i_deg));
+        throw Error(ErrorKind::usage,
+                    fmt::format("--theta-i-deg {:g}: it must be at least 0 and below 90", job.theta_i_deg));
     const optics::Stokes& s = job.incident;
     if (!s.allFinite() || s[0] <= 0.0 || s.tail<3>().norm() > s[0] * (1 + 1e-12))
-        throw Error(ErrorKind::usage, fmt::format("--stokes {},{},{},{} is no light (I must be positive and at least sqrt(Q^2 + U^2 + V^2))", s[0], s[1], s[2], s[3]));
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("--stokes {},{},{},{} is no light (I must be positive and at least sqrt(Q^2 + U^2 + V^2))",
+                        s[0], s[1], s[2], s[3]));
     check_angles(job.theta_o_deg, 90.0, "--theta-o-deg");
     check_angles(job.phi_deg, 360.0, "--phi-deg");
 }
@@ -58,7 +68,8 @@ void check_incidence(const FieldJob& job) {
 // Enough for six digits of the field: the phase function exactly, and the angular field to rounding of printed tables.
 int chosen_streams(const FieldJob& job, const rt::Problem& problem) {
     if (job.streams != 0) {
-        if (job.streams < 2 || job.streams > 512) throw Error(ErrorKind::usage, fmt::format("--streams {}: 2 to 512 make sense", job.streams));
+        if (job.streams < 2 || job.streams > 512)
+            throw Error(ErrorKind::usage, fmt::format("--streams {}: 2 to 512 make sense", job.streams));
         return job.streams;
     }
     int order = 0;
@@ -74,7 +85,8 @@ FieldResult field(const coating::Recipe& recipe, const FieldJob& job) {
     if (!job.wavelength_nm && !recipe.is_wavelength_independent())
         throw Error(ErrorKind::usage, "this recipe depends on wavelength: give --wavelength-nm");
 
-    const coating::OpticalProblem optical = coating::optical_problem(recipe, job.wavelength_nm.value_or(550.0), scattering_tolerance);
+    const coating::OpticalProblem optical =
+        coating::optical_problem(recipe, job.wavelength_nm.value_or(550.0), scattering_tolerance);
     const rt::Problem& problem = optical.problem;
     rt::validate(problem);
     const rt::Solver& solver = rt::solver_named(job.solver);
@@ -100,7 +112,8 @@ FieldResult field(const coating::Recipe& recipe, const FieldJob& job) {
             const auto& errors = upward ? computed.upward_error : computed.downward_error;
             for (size_t o = 0; o < job.theta_o_deg.size(); ++o)
                 for (size_t p = 0; p < job.phi_deg.size(); ++p)
-                    result.radiance.push_back({request.optical_depths[d], upward, job.theta_o_deg[o], job.phi_deg[p], hemisphere[o][p],
+                    result.radiance.push_back({request.optical_depths[d], upward, job.theta_o_deg[o], job.phi_deg[p],
+                                               hemisphere[o][p],
                                                errors.empty() ? std::nullopt : std::optional(errors[d][o][p])});
         }
     result.specular_surface = rt::specular_surface(problem, request.mu_i);

@@ -15,12 +15,12 @@ struct FieldJob {
     std::vector<double> theta_o_deg;
     std::vector<double> phi_deg;
     optics::Stokes incident{1, 0, 0, 0};
-    std::vector<double> optical_depths;    // empty = top upward and bottom downward
-    std::optional<double> wavelength_nm;   // needed unless the recipe is wavelength-independent
-    int streams = 0;                       // 0 = chosen
+    std::vector<double> optical_depths;   // empty = top upward and bottom downward
+    std::optional<double> wavelength_nm;  // needed unless the recipe is wavelength-independent
+    int streams = 0;                      // 0 = chosen
     std::string solver = "doubling";
     bool scalar = false;
-    std::int64_t samples = 1'000'000;      // photon packets of a statistical solver
+    std::int64_t samples = 1'000'000;  // photon packets of a statistical solver
     std::uint64_t seed = 1;
 };
 

@@ -170,7 +170,8 @@ Figure lobe_figure(std::span<const PlottedTable> tables, const PlotRequest& requ
                           title_or(request, fmt::format("BRDF in the plane of incidence ({:g} nm, light at {:g}°)",
                                                         request.wavelength_nm, request.theta_i_deg))))
         .line("unset border; unset tics; set size ratio -1; set lmargin at screen 0.02; set bmargin at screen 0.02")
-        .line(fmt::format("set tmargin at screen 0.91; set rmargin at screen {}", single ? 0.87 : 0.8))  // the scale of colours, or the key
+        .line(fmt::format("set tmargin at screen 0.91; set rmargin at screen {}",
+                          single ? 0.87 : 0.8))  // the scale of colours, or the key
         .line(fmt::format("set xrange [{0:.6g}:{1:.6g}]; set yrange [{2:.6g}:{3:.6g}]", -1.12 * radius, 1.12 * radius,
                           -0.17 * radius, 1.14 * radius));
     if (single && tables[0].label.empty())

@@ -33,7 +33,8 @@ std::shared_ptr<const brdf::MuellerTable> solve_recipe(const std::string& path, 
     const coating::Recipe recipe = coating::read_recipe(path);
     SolveRequest request;
     if (!recipe.is_wavelength_independent())
-        for (int wavelength = 380; wavelength <= 780; wavelength += recipe_step_nm) request.wavelengths_nm.push_back(wavelength);
+        for (int wavelength = 380; wavelength <= 780; wavelength += recipe_step_nm)
+            request.wavelengths_nm.push_back(wavelength);
     request.command = fmt::format("patina solve {} --wavelengths 380:780:{}", path, recipe_step_nm);
     SolveResult result = solve(recipe, request, control);
     if (result.interrupted) throw Error(ErrorKind::interrupted, fmt::format("stopped while solving {}", path));
@@ -77,10 +78,12 @@ render::SceneResources scene_resources(std::vector<std::string>& warnings, const
         return tables->get(path, [&] { return load_table(path, control); });
     };
     resources.load_half_angle_table = [half_angle_tables](const std::string& path) {
-        return half_angle_tables->get(path, [&] { return std::make_shared<const brdf::HalfAngleTable>(io::read_table_pbsdf(path)); });
+        return half_angle_tables->get(
+            path, [&] { return std::make_shared<const brdf::HalfAngleTable>(io::read_table_pbsdf(path)); });
     };
     resources.load_merl_table = [merl_tables](const std::string& path) {
-        return merl_tables->get(path, [&] { return std::make_shared<const brdf::MerlTable>(io::read_table_merl(path)); });
+        return merl_tables->get(path,
+                                [&] { return std::make_shared<const brdf::MerlTable>(io::read_table_merl(path)); });
     };
     resources.load_mesh = [meshes, &warnings](const std::string& path, const std::string& kind) {
         return meshes->get(path, [&] {
@@ -90,7 +93,8 @@ render::SceneResources scene_resources(std::vector<std::string>& warnings, const
         });
     };
     resources.load_bitmap = [bitmaps](const std::string& path, bool raw) {
-        return bitmaps->get(path + (raw ? "|raw" : ""), [&] { return std::make_shared<const Bitmap>(io::read_bitmap(path, raw)); });
+        return bitmaps->get(path + (raw ? "|raw" : ""),
+                            [&] { return std::make_shared<const Bitmap>(io::read_bitmap(path, raw)); });
     };
     return resources;
 }
@@ -122,7 +126,9 @@ fs::path part_path(const fs::path& path, const std::string& name) {
 }
 
 void check_picture_output(const fs::path& path) {
-    if (path.extension() != ".exr") throw Error(ErrorKind::usage, fmt::format("-o {}: the picture is an OpenEXR file, its name ends in .exr", path.string()));
+    if (path.extension() != ".exr")
+        throw Error(ErrorKind::usage,
+                    fmt::format("-o {}: the picture is an OpenEXR file, its name ends in .exr", path.string()));
     expect_writable(path);
 }
 

@@ -19,8 +19,8 @@ struct RenderRequest {
     std::string command;                           // for provenance
 };
 
-// Files for the renderer; each is loaded, and each recipe solved, once. What was repaired in a mesh is said in `warnings`,
-// which must outlive the resources.
+// Files for the renderer; each is loaded, and each recipe solved, once. What was repaired in a mesh is said in
+// `warnings`, which must outlive the resources.
 render::SceneResources scene_resources(std::vector<std::string>& warnings, const JobControl& control = {});
 
 // The picture, and the parts that the options ask for.
@@ -33,6 +33,7 @@ void check_picture_output(const std::filesystem::path& path);
 std::filesystem::path part_path(const std::filesystem::path& path, const std::string& name);
 
 // Writes the EXR and, if asked, a PNG of the same name; returns the names written.
-std::vector<std::string> write_picture(const std::filesystem::path& path, const StokesImage& image, bool stokes_rgb, bool png);
+std::vector<std::string> write_picture(const std::filesystem::path& path, const StokesImage& image, bool stokes_rgb,
+                                       bool png);
 
 }  // namespace patina::jobs

@@ -95,12 +95,15 @@ std::string starter_recipe() {
     for (const coating::TableInfo& table : coating::recipe_tables()) {
         text += fmt::format("#\n# {} - {}\n", table.heading.empty() ? "(top)" : table.heading, table.doc);
         for (const coating::KeyInfo& key : table.keys)
-            text += fmt::format("#   {:<26} {}{}{}\n", key.name, key.doc, key.unit.empty() || key.unit == "1" ? "" : fmt::format(" [{}]", key.unit),
+            text += fmt::format("#   {:<26} {}{}{}\n", key.name, key.doc,
+                                key.unit.empty() || key.unit == "1" ? "" : fmt::format(" [{}]", key.unit),
                                 key.fallback.empty() ? "" : fmt::format(" (default {})", key.fallback));
     }
     return text;
 }
 
-std::string starter_scene() { return scene_body; }
+std::string starter_scene() {
+    return scene_body;
+}
 
 }  // namespace patina::jobs

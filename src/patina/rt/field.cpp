@@ -95,8 +95,9 @@ std::vector<Added> FieldSolver::sweep_up(int m, Components components, std::vect
         if (thickness > 0.0) {
             auto [found, is_new] = solved.try_emplace({k, thickness});
             if (is_new)
-                found->second = media_.scatters(k, m) ? method_.solve(media_.kernels[k].system(m, components), {thickness, true})
-                                                      : media_.clear_layer(k, thickness, components);
+                found->second = media_.scatters(k, m)
+                                    ? method_.solve(media_.kernels[k].system(m, components), {thickness, true})
+                                    : media_.clear_layer(k, thickness, components);
             slabs[p] = add_layer(found->second, below[p + 1]);
         } else {
             const Eigen::Index n = static_cast<Eigen::Index>(media_.layers[k].size()) * components.count;

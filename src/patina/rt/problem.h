@@ -30,7 +30,7 @@ struct LambertianBase {
     double reflectance = 0.0;  // 0 .. 1, depolarizing
 };
 struct MetalBase {
-    std::complex<double> refractive_index;  // n + i k; against the lowest layer's index
+    std::complex<double> refractive_index;                 // n + i k; against the lowest layer's index
     std::optional<RoughSurface> roughness = std::nullopt;  // a smooth mirror without
 };
 using Base = std::variant<BlackBase, LambertianBase, MetalBase>;

@@ -51,8 +51,7 @@ GroupSolution solve_group(const StackMedia& media, const LayerMethod& method, in
             }
             below = below.size() > 0 ? add_layer(operators, below).reflection : operators.reflection;
         }
-        if (media.tops[k])
-            below = media.add_interface_of(k, components, below).reflection;
+        if (media.tops[k]) below = media.add_interface_of(k, components, below).reflection;
     }
     if (below.size() == 0)
         below = Eigen::MatrixXd::Zero(media.above.size() * components.count, media.above.size() * components.count);

@@ -211,7 +211,8 @@ TEST(Reflection, PeaksBeyondTheStreamsAreTruncatedAndReported) {
         optics::ExpansionCoefficients x = physical_expansion(1);
         for (auto* list : {&x.alpha1, &x.alpha2, &x.alpha3, &x.alpha4, &x.beta1, &x.beta2}) list->assign(70, 0.0);
         for (int l = 0; l < 70; ++l) x.alpha1[l] = (2 * l + 1) * std::pow(g, l);
-        return solver_named("doubling").reflection({1.0, {{1.0, 1.0, x, 1.0}}, BlackBase{}}, {.streams = streams, .most_fourier_orders = 1});
+        return solver_named("doubling")
+            .reflection({1.0, {{1.0, 1.0, x, 1.0}}, BlackBase{}}, {.streams = streams, .most_fourier_orders = 1});
     };
     EXPECT_EQ(solve(0.7, 4).diagnostics.notes.size(), 1u);
     EXPECT_TRUE(solve(0.995, 2).diagnostics.converged);

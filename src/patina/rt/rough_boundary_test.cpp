@@ -122,7 +122,9 @@ TEST(RoughBoundary, FieldAgreesWithReflection) {
 
 TEST(RoughBoundary, SaysWhenTheStreamsDoNotResolveTheLobes) {
     const auto on_metal_of = [](double alpha) {
-        return Problem{1.0, {{1.0, 0.9, physical_expansion(1), 1.5}}, MetalBase{{0.96, 6.69}, RoughSurface{alpha, FacetDistribution::ggx}}};
+        return Problem{1.0,
+                       {{1.0, 0.9, physical_expansion(1), 1.5}},
+                       MetalBase{{0.96, 6.69}, RoughSurface{alpha, FacetDistribution::ggx}}};
     };
     const Problem problem = on_metal_of(0.05);
     const SolveOptions few{.streams = 3, .most_fourier_orders = 1}, many{.streams = 48, .most_fourier_orders = 1};

@@ -17,9 +17,10 @@ struct SolveOptions {
     int streams = 16;  // quadrature nodes per hemisphere in the medium above (air); denser media add their own
     double fourier_tolerance = 1e-9;  // stop at the Fourier order whose largest element, relative to the BRDF, is below
     bool scalar = false;              // intensity only (the 1x1 problem), to show what ignoring polarization costs
-    std::int64_t samples = 1'000'000;  // photon packets of a statistical solver; reflection() shares them among incidences
-    std::uint64_t seed = 1;            // of its random numbers; the same seed gives the same bits on any number of threads
-    int most_fourier_orders = 0;      // of reflection(); 1 is enough for fluxes and views along the normal; 0: all needed
+    std::int64_t samples =
+        1'000'000;                // photon packets of a statistical solver; reflection() shares them among incidences
+    std::uint64_t seed = 1;       // of its random numbers; the same seed gives the same bits on any number of threads
+    int most_fourier_orders = 0;  // of reflection(); 1 is enough for fluxes and views along the normal; 0: all needed
 };
 
 struct Diagnostics {

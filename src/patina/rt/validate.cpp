@@ -15,7 +15,8 @@ Error bad(const std::string& problem, const std::string& why, const std::string&
 
 void validate_roughness(const std::optional<RoughSurface>& surface, const std::string& name) {
     if (surface && !(surface->alpha > 0.0 && surface->alpha <= 1.0))
-        throw bad(fmt::format("{} has alpha = {}", name, surface->alpha), "it lies in (0, 1]", surface->alpha > 1.0 ? "at most 1" : "leave it smooth");
+        throw bad(fmt::format("{} has alpha = {}", name, surface->alpha), "it lies in (0, 1]",
+                  surface->alpha > 1.0 ? "at most 1" : "leave it smooth");
 }
 
 void validate_expansion(const optics::ExpansionCoefficients& x, const std::string& name) {

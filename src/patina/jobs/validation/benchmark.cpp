@@ -38,7 +38,8 @@ std::size_t place(const std::vector<double>& axis, double value) {
 }  // namespace
 
 void compare_field(const rt::Solver& solver, const rt::Problem& problem, double mu_i, double factor,
-                   const rt::SolveOptions& options, const std::vector<RadianceValue>& all_values, Comparison& comparison) {
+                   const rt::SolveOptions& options, const std::vector<RadianceValue>& all_values,
+                   Comparison& comparison) {
     // A horizontal view sees no finite part of a layer, where a random walk could be scored.
     std::vector<RadianceValue> values = all_values;
     if (solver.is_statistical()) std::erase_if(values, [](const RadianceValue& value) { return value.mu_o == 0.0; });
