@@ -4,6 +4,7 @@
 
 #include "patina/core/error.h"
 #include "patina/render/bsdf_set.h"
+#include "patina/render/medium.h"
 
 namespace patina::render {
 
@@ -71,18 +72,35 @@ void add_emitters(std::vector<PluginDescriptor>& all) {
              sun});
 }
 
-void add_camera(std::vector<PluginDescriptor>& all) {
-    std::vector<ParameterDescriptor> camera = {
+void add_sensors(std::vector<PluginDescriptor>& all) {
+    const auto sensor = [&](const char* name, const char* doc, std::vector<ParameterDescriptor> parameters) {
+        parameters.push_back({"shutter_open", "number", "s", "0", "", "when light begins to count"});
+        parameters.push_back({"shutter_close", "number", "s", "shutter_open", ">= shutter_open", "and ends"});
+        all.push_back({"sensor", name, doc, std::move(parameters)});
+    };
+    const std::vector<ParameterDescriptor> planes = {
         to_world,
-        {"fov", "number", "degree", "39.6", "0 .. 180", "field of view along fov_axis"},
-        {"fov_axis", "string", "", "x", "x, y, diagonal, smaller, larger", "what fov measures"},
-        {"focal_length", "string", "mm", "50mm", "> 0", "instead of fov, on 36 x 24 mm film"},
         {"near_clip", "number", "scene units", "0.01", "", "accepted, without effect"},
         {"far_clip", "number", "scene units", "10000", "", "accepted, without effect"}};
-    all.push_back({"sensor", "perspective", "Pinhole camera.", camera});
+    std::vector<ParameterDescriptor> camera = planes;
+    camera.push_back({"fov", "number", "degree", "39.6", "0 .. 180", "field of view along fov_axis"});
+    camera.push_back({"fov_axis", "string", "", "x", "x, y, diagonal, smaller, larger", "what fov measures"});
+    camera.push_back({"focal_length", "string", "mm", "50mm", "> 0", "instead of fov, on 36 x 24 mm film"});
+    sensor("perspective", "Pinhole camera.", camera);
     camera.push_back({"aperture_radius", "number", "scene units", "", ">= 0", "of the lens"});
     camera.push_back({"focus_distance", "number", "scene units", "", "> 0", "of the plane in focus"});
-    all.push_back({"sensor", "thinlens", "Camera with depth of field.", camera});
+    sensor("thinlens", "Camera with depth of field.", camera);
+    sensor("orthographic", "Parallel rays; the film is -1 .. 1 along x of the sensor's own space.", planes);
+    sensor("radiancemeter", "Radiance along the ray from the origin of to_world along +z.", {to_world});
+    sensor("irradiancemeter", "Irradiance on the outside of the shape it stands in, the mean over its area.", {});
+    sensor("fluxmeter", "Flux onto the outside of the shape it stands in.", {});
+    sensor("radiositymeter", "Radiosity (exitance) of the outside of the shape it stands in: emitted and reflected.",
+           {});
+    sensor("goniophotometer", "Far-field intensity of everything in the scene over all directions.", {to_world});
+    sensor("distant", "Radiance that leaves the scene against one direction, the mean over its cross section.",
+           {to_world,
+            {"direction", "vector", "", "0, 0, 1", "", "instead of to_world: in which the sensor looks"},
+            {"target", "point", "scene units", "", "", "look at this point alone"}});
 }
 
 void add_film(std::vector<PluginDescriptor>& all) {
@@ -130,6 +148,8 @@ void add_integrators(std::vector<PluginDescriptor>& all) {
         {"light_samples", "integer", "", "1; distribution 4", ">= 1", "shadow rays at the first surface"},
         {"lobe_samples", "integer", "", "1; distribution 4", ">= 1", "rays into the lobe of the first surface"}};
     integrator("path", "Path tracing with light sampling, polarized.", "false");
+    for (const char* name : {"volumetric", "volpath", "volpathmis"})
+        integrator(name, "Path tracing through media, polarized.", "false");
     integrator("appel", "Direct light only: E(D|G)L.", "true", spread);
     integrator("whitted", "Direct light, mirrors and refraction: ES*(D|G)L.", "true", spread);
     integrator("distribution", "Distribution ray tracing: E(S|G)*(D|G)?L.", "false", spread);
@@ -160,9 +180,10 @@ void add_integrators(std::vector<PluginDescriptor>& all) {
 
 std::vector<PluginDescriptor> build_registry() {
     std::vector<PluginDescriptor> all = bsdf_descriptors();
+    for (PluginDescriptor& medium : medium_descriptors()) all.push_back(std::move(medium));
     add_shapes(all);
     add_emitters(all);
-    add_camera(all);
+    add_sensors(all);
     add_film(all);
     add_integrators(all);
     return all;
