@@ -36,6 +36,47 @@ void Geometry::commit() {
         embree_ = std::make_unique<EmbreeScene>(meshes, brute_force_ ? std::span<const AnalyticShape>{} : analytic);
 }
 
+void Geometry::intersect(RayBlock& rays, int count, Hit* hits) const {
+    // Meet the analytic shapes, all rays at once.
+    const RayOf<WideFloat> wide = ray_components(rays);
+    WideFloat nearest = rays.t.load(), best_u{}, best_v{};
+    WideInt best = WideInt{} - 1;
+    for (int i = 0; brute_force_ && i < static_cast<int>(analytic.size()); ++i) {
+        WideFloat u{}, v{};
+        const WideFloat t = analytic[i].distance(wide, u, v);
+        const WideInt nearer = t < nearest;
+        nearest = nearer ? t : nearest;
+        best_u = nearer ? u : best_u;
+        best_v = nearer ? v : best_v;
+        best = nearer ? WideInt{} + i : best;
+    }
+    rays.t.store(nearest);
+    rays.u.store(best_u);
+    rays.v.store(best_v);
+    rays.primitive.store(best);
+    for (int k = 0; k < count; ++k) {
+        const int primitive = rays.primitive[k];
+        hits[k] = {rays.t[k], primitive < 0 ? -1 : analytic[primitive].shape, primitive, false, rays.u[k], rays.v[k]};
+    }
+
+    // Then what Embree holds, where it is nearer.
+    for (int k = 0; embree_ && k < count; ++k) embree_->intersect(rays.ray(k), hits[k]);
+}
+
+std::uint32_t Geometry::occluded(RayBlock& rays, int count) const {
+    const RayOf<WideFloat> wide = ray_components(rays);
+    const WideFloat reach = rays.t.load();
+    WideInt blocked{};
+    for (int i = 0; brute_force_ && i < static_cast<int>(analytic.size()); ++i) {
+        WideFloat u, v;
+        blocked |= analytic[i].distance(wide, u, v) < reach;
+    }
+    std::uint32_t bits = set_lanes(blocked) & ((1u << count) - 1);
+    for (int k = 0; embree_ && k < count; ++k)
+        if (!(bits >> k & 1) && embree_->occluded(rays.ray(k))) bits |= 1u << k;
+    return bits;
+}
+
 SurfacePoint Geometry::surface(const Ray& ray, const Hit& hit) const {
     SurfacePoint point;
     point.shape = hit.shape;
