@@ -57,6 +57,11 @@ class Film {
         add_light(pixel, stokes, w);
         add_count(pixel, hit);
     }
+    // Announces that a pixel's sums will be wanted soon: a film is too large for the processor's caches.
+    void prefetch(std::size_t pixel) const {
+        const Float4* sums = &sums_[pixel * stride_];
+        for (std::size_t slot = 0; slot < stride_; slot += 4) __builtin_prefetch(sums + slot, 1);
+    }
     // Counts a path that brought nothing (more).
     void add_count(std::size_t pixel, bool hit) {
         sums_[pixel * stride_ + bins_ + 4] += Float4{1.0f, hit ? 1.0f : 0.0f, 0.0f, 0.0f};

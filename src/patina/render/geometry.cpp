@@ -24,7 +24,10 @@ void grow(Eigen::AlignedBox3f& box, const AnalyticShape& s) {
 
 void Geometry::commit() {
     Eigen::AlignedBox3f box;
-    for (const AnalyticShape& s : analytic) grow(box, s);
+    for (AnalyticShape& s : analytic) {
+        grow(box, s);
+        if (s.kind != AnalyticShape::Kind::sphere) s.frame = Frame(s.flipped ? Vec3(-s.n) : s.n, s.a);
+    }
     for (const MeshShape& m : meshes)
         for (const Vec3& p : m.mesh->positions) box.extend(p);
     if (!box.isEmpty()) {
@@ -90,27 +93,31 @@ SurfacePoint Geometry::surface(const Ray& ray, const Hit& hit) const {
 
 void Geometry::surface_of_analytic(const Ray& ray, const Hit& hit, SurfacePoint& point) const {
     const AnalyticShape& s = analytic[hit.primitive];
-    Vec3 tangent;
-    if (s.kind == AnalyticShape::Kind::sphere) {
-        // Put the point back on the sphere: the ray's own rounding grows with its length.
-        point.geometric_normal = (ray.origin + hit.t * ray.direction - s.o).normalized();
-        point.position = s.o + s.radius * point.geometric_normal;
-        const Vec3 local(s.a.dot(point.geometric_normal), s.b.dot(point.geometric_normal),
-                         s.n.dot(point.geometric_normal));
-        tangent = s.b * local.x() - s.a * local.y();
-        if (needs_uv) {
-            const float phi = std::atan2(local.y(), local.x());
-            point.uv = {(phi < 0 ? phi + 2 * pi_f : phi) * (0.5f * inv_pi_f),
-                        std::acos(std::clamp(local.z(), -1.0f, 1.0f)) * inv_pi_f};
-        }
-    } else {
+    if (s.kind != AnalyticShape::Kind::sphere) {
         point.position = s.o + hit.u * s.a + hit.v * s.b;
-        point.geometric_normal = s.n;
-        tangent = s.a;
+        point.frame = s.frame;
+        point.geometric_normal = s.frame.n;
         point.uv = {0.5f * (hit.u + 1), 0.5f * (hit.v + 1)};
+        return;
     }
-    if (s.flipped) point.geometric_normal = -point.geometric_normal;
-    point.frame = Frame(point.geometric_normal, tangent);
+    // Put the point back on the sphere: the ray's own rounding grows with its length.
+    const Vec3 outward = unit(ray.origin + hit.t * ray.direction - s.o);
+    point.position = s.o + s.radius * outward;
+    point.geometric_normal = s.flipped ? Vec3(-outward) : outward;
+    // The tangent along the circle of latitude is perpendicular to the normal as it is.
+    const float x = s.a.dot(outward), y = s.b.dot(outward), sin2 = x * x + y * y;
+    if (sin2 > 1e-20f) {
+        point.frame.n = point.geometric_normal;
+        point.frame.s = (s.b * x - s.a * y) * (1 / std::sqrt(sin2));
+        point.frame.t = point.frame.n.cross(point.frame.s);
+    } else {
+        point.frame = Frame(point.geometric_normal);
+    }
+    if (needs_uv) {
+        const float phi = std::atan2(y, x);
+        point.uv = {(phi < 0 ? phi + 2 * pi_f : phi) * (0.5f * inv_pi_f),
+                    std::acos(std::clamp(s.n.dot(outward), -1.0f, 1.0f)) * inv_pi_f};
+    }
 }
 
 void Geometry::surface_of_triangle(const Hit& hit, SurfacePoint& point) const {

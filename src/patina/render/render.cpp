@@ -217,6 +217,10 @@ class Renderer {
         std::vector<CameraSample> samples;
     };
 
+    std::size_t window_pixel(const SampleBlock::Place& place) const {
+        return static_cast<std::size_t>(place.y) * settings_.crop_width + place.x;
+    }
+
     // Traces and empties a block.
     void trace(SampleBlock& block, std::vector<Splat>* splats) {
         for (int first = 0; first < block.count; first += wide_lanes)
@@ -236,6 +240,7 @@ class Renderer {
         SamplerBlock draws;
         for (int i = first; i < last; ++i) {
             const auto& [x, y, sample] = block.places[i];
+            if (i == 0 || x != block.places[i - 1].x) film_.prefetch(window_pixel(block.places[i]));
             const auto pixel =
                 static_cast<std::uint32_t>(settings_.crop_y + y) * static_cast<std::uint32_t>(settings_.width) +
                 static_cast<std::uint32_t>(settings_.crop_x + x);
@@ -272,7 +277,7 @@ class Renderer {
             non_finite_.note(settings_.crop_x + place.x, settings_.crop_y + place.y, place.sample);
             return false;
         }
-        const std::size_t pixel = static_cast<std::size_t>(place.y) * settings_.crop_width + place.x;
+        const std::size_t pixel = window_pixel(place);
         film_.add(pixel, total, wavelengths, record.hit);
         for (std::size_t c = 0; c < class_films_.size(); ++c) {
             const StokesPacket& stokes = record.of_class(static_cast<int>(c));
@@ -336,7 +341,7 @@ void note_transport_norm(const Pictures& pictures, int terms, std::map<std::stri
 
 // Passes grow from one sample so that a first picture, and a stop, come soon.
 int next_pass(int done, int total) {
-    return std::min({total, done + largest_pass, std::max(1, 2 * done)});
+    return std::min({total, done + largest_pass, std::max(1, 4 * done)});
 }
 
 }  // namespace

@@ -23,7 +23,10 @@ class SceneBuilder {
         if ((scene_->integrator_node = root_.only_child("integrator"))) build_integrator(*scene_->integrator_node);
         for (const auto& node : root_.children_of("bsdf")) bsdf_index(node);
         for (const auto& node : root_.children_of("shape")) build_shape(*node);
-        for (const auto& node : root_.children_of("emitter")) emitters_.push_back(build_emitter(*node, resources_));
+        for (const auto& node : root_.children_of("emitter")) {
+            states_.push_back(build_polarization(*node, node->transform("to_world")));
+            emitters_.push_back(build_emitter(*node, resources_));
+        }
         root_.children_of("texture");  // named ones, built where they are referenced
         root_.expect_all_used({"integrator", "sensor", "bsdf", "shape", "emitter", "texture"});
         if (emitters_.empty())
@@ -31,7 +34,7 @@ class SceneBuilder {
                               "add one, for instance \"constant\"");
         scene_->geometry.needs_uv = any_texture(root_);
         scene_->geometry.commit();
-        scene_->lights = Lights(std::move(emitters_), scene_->geometry);
+        scene_->lights = Lights(std::move(emitters_), scene_->geometry, std::move(states_));
         return scene_;
     }
 
@@ -85,6 +88,7 @@ class SceneBuilder {
         scene_->geometry.shapes[index].bsdf = material ? bsdf_index(material) : default_bsdf();
         if (const auto emitter = node.only_child("emitter")) {
             scene_->geometry.shapes[index].emitter = static_cast<int>(emitters_.size());
+            states_.push_back(build_polarization(*emitter, node.transform("to_world")));
             emitters_.push_back(AreaEmitter{index, build_area_radiance(*emitter)});
         }
         expect_known_properties(node);
@@ -103,6 +107,7 @@ class SceneBuilder {
     std::map<const Properties*, int> bsdf_of_node_;  // -1 while being built
     int default_bsdf_ = -1;
     std::vector<Emitter> emitters_;
+    std::vector<EmitterPolarization> states_;  // of the emitters
 };
 
 }  // namespace

@@ -24,9 +24,9 @@ struct Sensor {
         const Vec3 direction((1 - 2 * film.x()) * tan_half_x, (1 - 2 * film.y()) * tan_half_y, 1);
         CameraRay result;
         result.ray.origin = origin;
-        result.ray.direction = (rotation * direction).normalized();
+        result.ray.direction = unit(rotation * direction);
         if (aperture_radius > 0) refocus(direction, lens, result.ray);
-        result.stokes_axis = result.ray.direction.cross(Vec3(rotation.col(1))).normalized();
+        result.stokes_axis = unit(result.ray.direction.cross(Vec3(rotation.col(1))));
         return result;
     }
 

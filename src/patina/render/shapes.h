@@ -55,6 +55,7 @@ struct AnalyticShape {
     // u^2 + v^2 <= 1, normal n = a x b normalized.
     Vec3 o, a, b, n;
     Vec3 dual_a, dual_b;  // u = dual_a . (p - o)
+    Frame frame;          // of planes, on their outside, tangent along a; Geometry::commit() sets it
     float radius = 0;
     float area = 0;
     bool flipped = false;  // the normal points the other way

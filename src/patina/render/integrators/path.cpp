@@ -1,5 +1,6 @@
 #include "patina/render/integrators/path.h"
 
+#include "patina/render/arriving_light.h"
 #include "patina/render/mueller_packet.h"
 #include "patina/render/scene.h"
 
@@ -32,8 +33,10 @@ class PathState {
 
     // Light of the environments that the last direction ran into.
     void add_environment() {
-        scene_.lights.for_each_environment(ray_.direction, w(), [&](Float4 radiance, float light_pdf) {
-            add(throughput_.of_unpolarized(radiance * share_of_scattering(light_pdf)), events_);
+        scene_.lights.for_each_environment(ray_.direction, w(), [&](Float4 radiance, float light_pdf, int emitter) {
+            add(arriving(throughput_, scene_.lights, emitter, radiance * share_of_scattering(light_pdf),
+                         -ray_.direction),
+                events_);
         });
     }
 
@@ -45,7 +48,8 @@ class PathState {
         if (largest(radiance) <= 0) return;
         const float light_pdf =
             last_delta_ ? 0.0f : scene_.lights.surface_pdf(emitter, scene_.geometry, hit_, point_, last_position_);
-        add(throughput_.of_unpolarized(radiance * share_of_scattering(light_pdf)), events_);
+        add(arriving(throughput_, scene_.lights, emitter, radiance * share_of_scattering(light_pdf), -ray_.direction),
+            events_);
     }
 
     bool may_be_lit() const { return scene_.lights.any_sampled() && !bsdf_is_delta(bsdf(), shading_point()); }
@@ -54,7 +58,7 @@ class PathState {
     // way.
     bool draw_direct_light(float choice, const Vec2& u, Ray& shadow) {
         ShadingPoint shading = shading_point();
-        shading.unpolarized_light = true;
+        shading.unpolarized_light = !scene_.lights.any_polarized();
         LightSample light;
         if (!scene_.lights.sample(scene_.geometry, point_.position, w(), choice, u, light)) return false;
         BsdfValue value;
@@ -62,8 +66,9 @@ class PathState {
         if (!bsdf_evaluate(bsdf(), shading, outgoing, incident, value)) return false;
         const float share = light.delta ? 1.0f : power_heuristic(light.pdf, value.pdf);
         axes_to_world(value.f);
-        direct_ = throughput_.of_unpolarized(light.radiance * (share / light.pdf), value.f, -ray_.direction);
-        direct_events_ = classes_.after(events_, continuous_event(bsdf(), shading, outgoing));
+        direct_ = arriving(throughput_, scene_.lights, light.emitter, light.radiance * (share / light.pdf),
+                           -light.direction, value.f, -ray_.direction);
+        direct_events_ = after_continuous_event(shading, outgoing);
         // Stop short of the lamp itself; a share of the distance covers the rounding of its position.
         shadow = {point_.origin(light.direction), light.direction, light.distance * (1 - 1e-4f)};
         return true;
@@ -76,8 +81,8 @@ class PathState {
         const Vec3 outgoing = point_.frame.to_local(-ray_.direction);
         const ShadingPoint shading = shading_point();
         if (!bsdf_sample(bsdf(), shading, outgoing, lobe, u, sample)) return false;
-        events_ = classes_.after(
-            events_, sample.delta ? ScatteringEvent::specular : continuous_event(bsdf(), shading, outgoing));
+        events_ = sample.delta ? classes_.after(events_, ScatteringEvent::specular)
+                               : after_continuous_event(shading, outgoing);
         axes_to_world(sample.weight);
         throughput_.append(sample.weight, -ray_.direction);
         if (sample.dispersed && !hero_only_) {
@@ -88,7 +93,7 @@ class PathState {
         last_position_ = point_.position;
         last_pdf_ = sample.pdf;
         last_delta_ = sample.delta;
-        ray_.direction = point_.frame.to_world(sample.incident).normalized();
+        ray_.direction = straightened(point_.frame.to_world(sample.incident));
         ray_.origin = point_.origin(ray_.direction);
         ray_.t_max = INFINITY;
         return largest(throughput_.intensity()) > 0;
@@ -109,6 +114,11 @@ class PathState {
     ShadingPoint shading_point() const { return {&w(), point_.uv, scene_.bsdfs.data()}; }
     void add(const StokesPacket& stokes, int events) { sample_.record->add(stokes, classes_.path_class(events)); }
 
+    // The classifier's state after an event that is no delta function; where all paths are of one class it stays.
+    int after_continuous_event(const ShadingPoint& shading, const Vec3& outgoing) const {
+        if (classes_.class_count() == 1) return events_;
+        return classes_.after(events_, continuous_event(bsdf(), shading, outgoing));
+    }
     float share_of_scattering(float light_pdf) const {
         return last_delta_ || light_pdf <= 0 ? 1.0f : power_heuristic(last_pdf_, light_pdf);
     }
