@@ -105,6 +105,9 @@ class Throughput {
         write_identity();
         for (int i = 0; i < (rank_ == Rank::one ? 1 : 4); ++i) columns_[i] *= factor;
     }
+    void scale(Float4 factor) {
+        for (int i = 0; i < (depolarized_ ? 1 : 4); ++i) columns_[i] *= spread(factor);
+    }
     // Keeps one wavelength of four, which then stands for all of them.
     void keep_only_hero() {
         write_identity();

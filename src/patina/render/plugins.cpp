@@ -4,6 +4,7 @@
 
 #include "patina/core/error.h"
 #include "patina/render/bsdf_set.h"
+#include "patina/render/medium.h"
 
 namespace patina::render {
 
@@ -130,6 +131,8 @@ void add_integrators(std::vector<PluginDescriptor>& all) {
         {"light_samples", "integer", "", "1; distribution 4", ">= 1", "shadow rays at the first surface"},
         {"lobe_samples", "integer", "", "1; distribution 4", ">= 1", "rays into the lobe of the first surface"}};
     integrator("path", "Path tracing with light sampling, polarized.", "false");
+    for (const char* name : {"volumetric", "volpath", "volpathmis"})
+        integrator(name, "Path tracing through media, polarized.", "false");
     integrator("appel", "Direct light only: E(D|G)L.", "true", spread);
     integrator("whitted", "Direct light, mirrors and refraction: ES*(D|G)L.", "true", spread);
     integrator("distribution", "Distribution ray tracing: E(S|G)*(D|G)?L.", "false", spread);
@@ -160,6 +163,7 @@ void add_integrators(std::vector<PluginDescriptor>& all) {
 
 std::vector<PluginDescriptor> build_registry() {
     std::vector<PluginDescriptor> all = bsdf_descriptors();
+    for (PluginDescriptor& medium : medium_descriptors()) all.push_back(std::move(medium));
     add_shapes(all);
     add_emitters(all);
     add_camera(all);

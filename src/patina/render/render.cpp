@@ -55,7 +55,7 @@ std::unique_ptr<Integrator> integrator_of(const Scene& scene, const RenderOption
     if (!options.integrator && node) return build_integrator(*node);
     Properties chosen;
     chosen.category = "integrator";
-    chosen.type = options.integrator.value_or("path");
+    chosen.type = options.integrator.value_or(scene.media.empty() ? "path" : "volumetric");
     if (node) {
         // Keep what the scene says about its own integrator where the other knows it too.
         const PluginDescriptor& plugin = expect_plugin(chosen);
@@ -133,6 +133,9 @@ class Renderer {
             throw Error(ErrorKind::usage,
                         "this integrator does not follow single paths: no light-path expressions and "
                         "no Neumann series with it; use path or bidirectional");
+        if (!scene.media.empty() && !integrator_->follows_media())
+            throw Error(ErrorKind::usage,
+                        "the scene has media, which this integrator does not follow; use volumetric");
         if (options.noise_target && integrator_->splats())
             throw Error(ErrorKind::usage,
                         "the noise of an integrator that begins at the lamps is not estimated while "

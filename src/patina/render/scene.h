@@ -11,6 +11,7 @@
 #include "patina/render/film.h"
 #include "patina/render/geometry.h"
 #include "patina/render/integrators/integrator.h"
+#include "patina/render/medium.h"
 #include "patina/render/sensor.h"
 
 namespace patina::render {
@@ -20,6 +21,8 @@ class Scene {
     Geometry geometry;
     std::vector<Bsdf> bsdfs;
     Lights lights;
+    std::vector<Medium> media;                          // shapes and the camera name them by index
+    int camera_medium = vacuum;                         // around the camera
     std::shared_ptr<const Properties> sensor_node;      // built anew when the film's size is overridden
     std::shared_ptr<const Properties> integrator_node;  // likewise for the integrator; null: path tracing
     FilmSettings film;

@@ -22,13 +22,14 @@ class SceneBuilder {
         build_camera();
         if ((scene_->integrator_node = root_.only_child("integrator"))) build_integrator(*scene_->integrator_node);
         for (const auto& node : root_.children_of("bsdf")) bsdf_index(node);
+        for (const auto& node : root_.children_of("medium")) medium_index(node);
         for (const auto& node : root_.children_of("shape")) build_shape(*node);
         for (const auto& node : root_.children_of("emitter")) {
             states_.push_back(build_polarization(*node, node->transform("to_world")));
             emitters_.push_back(build_emitter(*node, resources_));
         }
         root_.children_of("texture");  // named ones, built where they are referenced
-        root_.expect_all_used({"integrator", "sensor", "bsdf", "shape", "emitter", "texture"});
+        root_.expect_all_used({"integrator", "sensor", "bsdf", "shape", "emitter", "texture", "medium"});
         if (emitters_.empty())
             throw input_error(root_.where, "the scene is dark", "it has no emitter",
                               "add one, for instance \"constant\"");
@@ -60,6 +61,7 @@ class SceneBuilder {
             expect_known_properties(*sampler);
         }
         build_sensor(node, scene_->film.width, scene_->film.height);
+        scene_->camera_medium = medium_index(node.only_child("medium"));
         expect_known_properties(node);
     }
 
@@ -74,6 +76,23 @@ class SceneBuilder {
         return bsdf_of_node_[node.get()] = static_cast<int>(scene_->bsdfs.size()) - 1;
     }
 
+    // Null: the vacuum.
+    int medium_index(const std::shared_ptr<const Properties>& node) {
+        if (!node) return vacuum;
+        const auto [known, is_new] = medium_of_node_.try_emplace(node.get(), static_cast<int>(scene_->media.size()));
+        if (is_new) scene_->media.push_back(build_medium(*node, {&resources_, &scene_->notes}));
+        return known->second;
+    }
+
+    // The child `side`, which must be a medium.
+    int side_medium(const Properties& shape, const char* side) {
+        const auto node = shape.named_child(side);
+        if (node && node->category != "medium")
+            throw input_error(node->where, fmt::format("the {} of a shape is a medium", side),
+                              fmt::format("this is a {}", node->category));
+        return medium_index(node);
+    }
+
     int default_bsdf() {
         if (default_bsdf_ < 0) {
             default_bsdf_ = static_cast<int>(scene_->bsdfs.size());
@@ -86,6 +105,8 @@ class SceneBuilder {
         const int index = append_shape(node, resources_, scene_->geometry);
         const auto material = node.only_child("bsdf");
         scene_->geometry.shapes[index].bsdf = material ? bsdf_index(material) : default_bsdf();
+        scene_->geometry.shapes[index].interior = side_medium(node, "interior");
+        scene_->geometry.shapes[index].exterior = side_medium(node, "exterior");
         if (const auto emitter = node.only_child("emitter")) {
             scene_->geometry.shapes[index].emitter = static_cast<int>(emitters_.size());
             states_.push_back(build_polarization(*emitter, node.transform("to_world")));
@@ -105,6 +126,7 @@ class SceneBuilder {
     std::shared_ptr<Scene> scene_ = std::make_shared<Scene>();
     BsdfBuilder bsdf_builder_;
     std::map<const Properties*, int> bsdf_of_node_;  // -1 while being built
+    std::map<const Properties*, int> medium_of_node_;
     int default_bsdf_ = -1;
     std::vector<Emitter> emitters_;
     std::vector<EmitterPolarization> states_;  // of the emitters
