@@ -101,19 +101,13 @@ class Throughput {
         rank_ = Rank::full;
     }
 
-    void scale(float factor) {
-        write_identity();
-        for (int i = 0; i < (rank_ == Rank::one ? 1 : 4); ++i) columns_[i] *= factor;
-    }
+    void scale(float factor) { scale(splat(factor)); }
     void scale(Float4 factor) {
-        for (int i = 0; i < (depolarized_ ? 1 : 4); ++i) columns_[i] *= spread(factor);
+        write_identity();
+        for (int i = 0; i < (rank_ == Rank::one ? 1 : 4); ++i) columns_[i] *= spread(factor);
     }
     // Keeps one wavelength of four, which then stands for all of them.
-    void keep_only_hero() {
-        write_identity();
-        const Float4 weight{4, 0, 0, 0};
-        for (int i = 0; i < (rank_ == Rank::one ? 1 : 4); ++i) columns_[i] *= spread(weight);
-    }
+    void keep_only_hero() { scale(Float4{4, 0, 0, 0}); }
     // Intensity the camera sees of unpolarized light that arrives.
     Float4 intensity() const { return rank_ == Rank::identity ? splat(1) : stokes_row(columns_[0], 0); }
     bool depolarized() const { return rank_ == Rank::one; }

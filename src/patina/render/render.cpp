@@ -9,6 +9,7 @@
 
 #include "patina/core/error.h"
 #include "patina/core/parallel.h"
+#include "patina/render/delta_light_at_sensor.h"
 #include "patina/render/picture_parts.h"
 #include "patina/render/plugins.h"
 #include "patina/render/scene.h"
@@ -123,7 +124,8 @@ class Renderer {
     Renderer(const Scene& scene, const RenderOptions& options, const JobControl& control)
         : scene_(scene),
           settings_(film_of(scene, options)),
-          sensor_(build_sensor(*scene.sensor_node, settings_.width, settings_.height)),
+          sensor_(
+              build_sensor(*scene.sensor_node, settings_.width, settings_.height, scene.geometry, scene.sensor_shape)),
           integrator_(integrator_of(scene, options)),
           expressions_(expressions_of(options)),
           classes_(expressions_),
@@ -134,8 +136,7 @@ class Renderer {
                         "this integrator does not follow single paths: no light-path expressions and "
                         "no Neumann series with it; use path or bidirectional");
         if (!scene.media.empty() && !integrator_->follows_media())
-            throw Error(ErrorKind::usage,
-                        "the scene has media, which this integrator does not follow; use volumetric");
+            throw Error(ErrorKind::usage, "the scene has media, which this integrator does not follow; use volumetric");
         if (options.noise_target && integrator_->splats())
             throw Error(ErrorKind::usage,
                         "the noise of an integrator that begins at the lamps is not estimated while "
@@ -180,7 +181,7 @@ class Renderer {
     std::size_t pixel_count() const { return film_.pixel_count(); }
 
     Pictures develop() const {
-        Pictures pictures{film_.develop(), {}};
+        Pictures pictures{film_.develop(), {}, {}};
         if (!knows_noise()) pictures.whole.variance.clear();
         if (expressions_.empty()) return pictures;
 
@@ -203,6 +204,23 @@ class Renderer {
             pictures.parts.emplace_back(expressions_[e].name, std::move(part));
         }
         return pictures;
+    }
+
+    // From mean radiance to what a meter measures; the picture then says what it holds.
+    void calibrate(Pictures& pictures) const {
+        if (!sensor_.is_meter()) return;
+        const auto scale = [&](StokesImage& image) {
+            const auto factor = static_cast<float>(sensor_.scale);
+            for (float& value : image.spectral) value *= factor;
+            for (float& value : image.rgb) value *= factor;
+            for (float& value : image.variance) value *= factor * factor;
+            image.metadata["quantity"] = names_of(sensor_.quantity).name;
+            image.metadata["unit"] = names_of(sensor_.quantity).spectral_unit;
+        };
+        scale(pictures.whole);
+        for (auto& [name, part] : pictures.parts) scale(part);
+        pictures.measurement = measure(pictures.whole, sensor_.quantity, sensor_.kind == Sensor::Kind::far_field);
+        pictures.measurement->exposure_s = sensor_.shutter_close - sensor_.shutter_open;
     }
 
   private:
@@ -230,8 +248,12 @@ class Renderer {
             begin_samples(block, first, std::min(first + wide_lanes, block.count));
         integrator_->trace_block(problem(), std::span(block.samples).first(block.count));
         for (int i = 0; i < block.count; ++i) {
-            PathRecord& record = block.records[i];
-            if (!add_sample(block.places[i], record, block.samples[i].wavelengths)) continue;
+            const CameraSample& sample = block.samples[i];
+            PathRecord& record = *sample.record;
+            if (sensor_.is_meter())
+                record.add(delta_light_at_sensor(scene_, sensor_, sample.camera, sample.wavelengths),
+                           classes_.path_class(LightPathClassifier::eye));
+            if (!add_sample(block.places[i], record, sample.wavelengths)) continue;
             if (splats) splats->insert(splats->end(), record.splats.begin(), record.splats.end());
         }
         block.count = 0;
@@ -252,23 +274,24 @@ class Renderer {
         }
         FloatLanes film_x, film_y, lens_x, lens_y, hue_x, hue_y;
         draws.next2(on_film, film_x, film_y);
-        if (sensor_.aperture_radius > 0) draws.next2(on_lens, lens_x, lens_y);
+        if (sensor_.uses_lens()) draws.next2(on_lens, lens_x, lens_y);
         draws.next2(hue, hue_x, hue_y);
         for (int i = first; i < last; ++i) {
             const int k = i - first;
-            const auto& [x, y, sample] = block.places[i];
             CameraSample& s = block.samples[i];
-            s.sampler.seek(camera_draws);
             const Vec2 offset = settings_.filter.sample({film_x[k], film_y[k]});
-            s.camera = sensor_.ray({(settings_.crop_x + x + 0.5f + offset.x()) / settings_.width,
-                                    (settings_.crop_y + y + 0.5f + offset.y()) / settings_.height},
-                                   {lens_x[k], lens_y[k]});
+            film_x[k] = (settings_.crop_x + block.places[i].x + 0.5f + offset.x()) / settings_.width;
+            film_y[k] = (settings_.crop_y + block.places[i].y + 0.5f + offset.y()) / settings_.height;
             // The hero's quarter of the range and the place in it are drawn apart: all four wavelengths share the
             // latter.
             s.wavelengths = Wavelengths::sample(0.25f * (std::floor(4 * hue_y[k]) + hue_x[k]));
-            block.records[i].begin();
+            s.sampler.seek(camera_draws);
             s.record = &block.records[i];
+            s.record->begin();
         }
+        Sensor::CameraRay rays[wide_lanes];
+        sensor_.rays(film_x, film_y, lens_x, lens_y, last - first, rays);
+        for (int i = first; i < last; ++i) block.samples[i].camera = rays[i - first];
     }
 
     // False: the sample is left out, for it is not finite.
@@ -388,6 +411,7 @@ Pictures render_parts(const Scene& scene, const RenderOptions& options, const Jo
         non_finite ? fmt::format("{} at {}", non_finite, renderer.non_finite().places()) : "0";
     if (stopped) metadata["stopped"] = "yes";
     for (auto& [name, part] : pictures.parts) part.metadata.insert(metadata.begin(), metadata.end());
+    renderer.calibrate(pictures);
     note_transport_norm(pictures, options.neumann_terms, metadata);
     return pictures;
 }

@@ -79,6 +79,15 @@ template <class F, class G>
 auto dot(const Vec3Of<F>& a, const Vec3Of<G>& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
+template <class F, class G>
+auto cross(const Vec3Of<F>& a, const Vec3Of<G>& b) {
+    return Vec3Of<F>{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <class F>
+Vec3Of<F> unit(const Vec3Of<F>& v) {
+    const F scale = 1 / sqrt_of(dot(v, v));
+    return {v.x * scale, v.y * scale, v.z * scale};
+}
 inline Vec3Of<float> components(const Vec3& v) {
     return {v.x(), v.y(), v.z()};
 }
