@@ -1,6 +1,10 @@
 #pragma once
 // The film: what it is (size, window, filter, spectral bins) and the sums that samples leave on it.
 
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "patina/core/properties.h"
@@ -50,7 +54,7 @@ FilmSettings build_film(const Properties& node);
 // time.
 class Film {
   public:
-    Film(const FilmSettings& settings, const ColourMatching& matching);
+    Film(const FilmSettings& settings, const ColourMatching& matching, bool with_variance);
 
     // Adds one path: its Stokes vector at its four wavelengths.
     void add(std::size_t pixel, const StokesPacket& stokes, const Wavelengths& w, bool hit) {
@@ -75,15 +79,23 @@ class Film {
             const Float4 xyz = 0.25f * matching_.xyz(node);
             for (int component = 0; component < 4; ++component) colour[component] += xyz * s[component];
         }
-        for (int component = 0; component < 4; ++component) {
-            colour[component][3] = colour[component][1] * colour[component][1];
-            sums[bins_ + component] += colour[component];
-        }
+        for (int component = 0; component < 4; ++component) sums[bins_ + component] += colour[component];
     }
+
+    // Is `samples` a count of samples of a pixel after which a batch ends? There are up to `most_batches` of equal
+    // size, then they are joined two by two.
+    static bool batch_ends(int samples) { return samples % batch_size(samples) == 0; }
+    // Ends a batch, when so many samples are done: the spread of the batches' mean luminances tells the variance,
+    // whatever light came from other pixels' samples, and sees most of what stratified samples gain.
+    void end_batch(std::size_t pixel, int samples);
 
     // Root mean square over the pixels of the standard error of the luminance, over the picture's mean luminance.
     double relative_noise() const;
     StokesImage develop() const;
+    // All that the film knows, to be kept and put back. Bytes of the machine's own order.
+    std::array<std::span<std::byte>, 2> memory() {
+        return {std::as_writable_bytes(std::span(sums_)), std::as_writable_bytes(std::span(batches_))};
+    }
     std::size_t pixel_count() const { return static_cast<std::size_t>(settings_.crop_width) * settings_.crop_height; }
 
   private:
@@ -91,8 +103,20 @@ class Film {
     const ColourMatching& matching_;
     int bins_;
     std::size_t stride_;
-    // [pixel][slot]: Stokes vector of each bin, (X, Y, Z, Y^2) of each Stokes component, (samples, hits, -, -).
+    static constexpr int most_batches = 8;
+    static int batch_size(int samples) {
+        return samples <= most_batches ? 1
+                                       : static_cast<int>(std::bit_ceil(static_cast<unsigned>(samples)) / most_batches);
+    }
+    // Variances of the mean luminances of the Stokes components; infinite before the second batch.
+    std::array<double, 4> variances_of_means(std::size_t pixel) const;
+
+    // [pixel][slot]: Stokes vector of each bin; (X, Y, Z, -) of each Stokes component; (samples, hits, batches, samples
+    // in them).
     std::vector<Float4> sums_;
+    // [pixel][batch]: Y of the Stokes components at the end of the batch, summed from the first sample on. Empty: the
+    // variance is not asked for.
+    std::vector<Float4> batches_;
     std::vector<float> bin_weight_;  // (visible range / number of wavelengths) / width of the bin
     std::vector<int> bin_of_;        // [nanometre] bin at the nanometre's start, -1 before the first
     std::vector<float> upper_edge_;  // [nanometre] where the next bin begins within this nanometre, or infinity
