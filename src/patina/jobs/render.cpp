@@ -114,10 +114,11 @@ class PictureIdentity {
             return table;
         };
     }
-    RenderIdentity with(const render::RenderOptions& options) const {
+    RenderIdentity of(const RenderRequest& request) const {
         RenderIdentity identity{{"the scene or a file it names", scene_.hex()},
                                 {"the program's version", PATINA_VERSION}};
-        add_options(options, identity);
+        add_options(request.options, identity);
+        if (!request.sensor.empty()) identity["--sensor"] = request.sensor;
         return identity;
     }
 
@@ -151,8 +152,8 @@ render::Pictures render_scene(const RenderRequest& request, const JobControl& co
     PictureIdentity identity(*tree);
     render::SceneResources resources = scene_resources(warnings, control);
     identity.watch(resources);
-    const std::shared_ptr<const render::Scene> scene = render::build_scene(*tree, resources);
-    const CheckpointFile file(request.checkpoint, identity.with(request.options));
+    const std::shared_ptr<const render::Scene> scene = render::build_scene(*tree, resources, request.sensor);
+    const CheckpointFile file(request.checkpoint, identity.of(request));
     render::Pictures pictures =
         render::render_parts(*scene, request.options, control, checkpoint_of(request, file, warnings));
     const bool stopped = pictures.whole.metadata.contains("stopped");

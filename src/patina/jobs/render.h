@@ -17,6 +17,7 @@ struct RenderRequest {
     render::RenderOptions options;
     std::map<std::string, std::string> variables;  // values for the scene's <default> names
     std::string command;                           // for provenance
+    std::string sensor;                            // of several, by id or number; "" is the first
 
     // Where the state is kept every so often and when stopped; removed when the picture is done. Empty: nowhere.
     std::filesystem::path checkpoint;

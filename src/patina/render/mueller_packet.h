@@ -110,6 +110,9 @@ class Throughput {
     void scale(float factor) {
         for (int i = 0; i < (depolarized_ ? 1 : 4); ++i) columns_[i] *= factor;
     }
+    void scale(Float4 factor) {
+        for (int i = 0; i < (depolarized_ ? 1 : 4); ++i) columns_[i] *= spread(factor);
+    }
     // Keeps one wavelength of four, which then stands for all of them.
     void keep_only_hero() {
         const Float4 weight{4, 0, 0, 0};
@@ -118,6 +121,13 @@ class Throughput {
     // Intensity the camera sees of unpolarized light that arrives.
     Float4 intensity() const { return stokes_row(columns_[0], 0); }
     bool depolarized() const { return depolarized_; }
+    // The full matrix of one wavelength, for light in the frame with the path's present axis.
+    optics::Mueller matrix(int wavelength) const {
+        optics::Mueller full = optics::Mueller::Zero();
+        for (int column = 0; column < (depolarized_ ? 1 : 4); ++column)
+            for (int row = 0; row < 4; ++row) full(row, column) = columns_[column][4 * row + wavelength];
+        return full;
+    }
 
   private:
     void append_to_rank_one(const ScatteringMatrix& event) {

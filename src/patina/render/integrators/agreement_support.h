@@ -173,4 +173,24 @@ inline Node specular_scene() {
                   ball(-0.6, node("bsdf", "conductor", {{"material", std::string("Al")}}))});
 }
 
+// Lamps of every kind, each polarized in another way, over rough metal.
+inline Node polarized_lamps_scene() {
+    const Value linear{"polarization", std::string("linear")}, circular{"polarization", std::string("circular")};
+    const Node area =
+        node("shape", "rectangle", {{"to_world", Eigen::Matrix4d(translate({0, 0, 2}) * rotate_x(180))}},
+             {node("emitter", "area", {uniform("radiance", 1), {"stokes", std::string("1, 0.5, 0.3, 0.6")}})});
+    const Node point =
+        node("emitter", "point", {{"position", Vector3d(-1.5, -1, 1.5)}, uniform("intensity", 1), linear});
+    const Node spot = node("emitter", "spot",
+                           {{"to_world", look_at({1.5, -2, 2}, {0.3, 0, 0}, {0, 0, 1})},
+                            {"cutoff_angle", 40.0},
+                            uniform("intensity", 3),
+                            circular});
+    const Node sun =
+        node("emitter", "directional", {{"direction", Vector3d(1, 1, -1)}, uniform("irradiance", 0.3), linear});
+    const Node sky = node("emitter", "constant", {uniform("radiance", 0.2), {"polarization", std::string("rayleigh")}});
+    return scene({path(4), camera(), area, point, spot, sun, sky, floor(0.6), wall(rough(0.4)), ball(0.5, rough()),
+                  ball(-0.6, rough(0.5))});
+}
+
 }  // namespace patina::render::test

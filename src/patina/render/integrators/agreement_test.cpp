@@ -1,7 +1,6 @@
 // Integrators against each other: equal means by a t test whose false-alarm rate is stated, over all scenes, blocks of
 // pixels and Stokes components together (agreement_support.h).
 
-#include "patina/core/parallel.h"
 #include "patina/render/integrators/agreement_support.h"
 
 namespace patina::render {
@@ -44,6 +43,18 @@ TEST(Agreement, PolarizedSpecularScene) {
     // The same part of the paths in both directions of work.
     expect_agreement(measure(*scene, "path", 64, "LSS+.*DE"), measure(*scene, "bidirectional", 32, "LSS+.*DE", 100),
                      "caustics");
+}
+
+// The state of the light reaches the camera alike from hits, light sampling and light paths.
+TEST(Agreement, PolarizedLamps) {
+    const auto lit = build_scene(*polarized_lamps_scene(), {});
+    const Measurements by_path = measure(*lit, "path", 96), by_both = measure(*lit, "bidirectional", 48, "", 100);
+    expect_agreement(by_path, by_both, "path, bidirectional");
+    expect_agreement(by_path, measure(*lit, "light", 192, "", 200), "path, light");
+    expect_agreement(measure(*lit, "appel", 8), measure(*lit, "path", 8, "E(D|G)L", 100), "appel");
+    expect_agreement(measure(*lit, "distribution", 4), measure(*lit, "path", 16, "E(S|G)*(D|G)?L", 100),
+                     "distribution");
+    for (int component : {1, 2, 3}) EXPECT_GT(significance(by_path, component), 10) << component;
 }
 
 TEST(Agreement, RayTreesAreThePathsOfTheirGrammar) {
@@ -145,24 +156,6 @@ TEST(Agreement, FindsAnErrorOfThreePercent) {
     EXPECT_LT(corrected_p(measure(*build_scene(*diffuse_scene(), {}), "path", 128),
                           measure(*build_scene(*wrong, {}), "bidirectional", 64, "", 100)),
               false_alarm_rate);
-}
-
-TEST(Agreement, SplatsDoNotDependOnThreads) {
-    const auto scene = build_scene(*specular_scene(), {});
-    for (const char* integrator : {"light", "bidirectional", "distribution"}) {
-        std::vector<float> first;
-        for (int threads : {1, 2}) {
-            set_thread_count(threads);
-            RenderOptions options;
-            options.integrator = integrator;
-            options.size = {40, 40};
-            options.samples_per_pixel = 2;
-            const StokesImage image = render(*scene, options);
-            if (threads == 1) first = image.spectral;
-            EXPECT_EQ(first, image.spectral) << integrator;
-        }
-    }
-    set_thread_count(0);
 }
 
 }  // namespace

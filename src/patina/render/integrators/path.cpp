@@ -1,6 +1,9 @@
 #include "patina/render/integrators/path.h"
 
+#include "patina/core/contract.h"
+#include "patina/render/arriving_light.h"
 #include "patina/render/mueller_packet.h"
+#include "patina/render/realizability.h"
 #include "patina/render/scene.h"
 
 namespace patina::render {
@@ -33,8 +36,10 @@ class PathState {
 
     // Light of the environments that the last direction ran into.
     void add_environment() {
-        scene_.lights.for_each_environment(ray_.direction, w_, [&](Float4 radiance, float light_pdf) {
-            add(throughput_.of_unpolarized(radiance * share_of_scattering(light_pdf)), events_);
+        scene_.lights.for_each_environment(ray_.direction, w_, [&](Float4 radiance, float light_pdf, int emitter) {
+            add(arriving(throughput_, scene_.lights, emitter, radiance * share_of_scattering(light_pdf),
+                         -ray_.direction),
+                events_);
         });
     }
 
@@ -46,13 +51,14 @@ class PathState {
         if (largest(radiance) <= 0) return;
         const float light_pdf =
             last_delta_ ? 0.0f : scene_.lights.surface_pdf(emitter, scene_.geometry, hit_, point_, last_position_);
-        add(throughput_.of_unpolarized(radiance * share_of_scattering(light_pdf)), events_);
+        add(arriving(throughput_, scene_.lights, emitter, radiance * share_of_scattering(light_pdf), -ray_.direction),
+            events_);
     }
 
     // Light of a lamp drawn at random, scattered here.
     void add_direct_light() {
         ShadingPoint shading = shading_point();
-        shading.unpolarized_light = true;
+        shading.unpolarized_light = !scene_.lights.any_polarized();
         if (!scene_.lights.any_sampled() || bsdf_is_delta(bsdf(), shading)) return;
         LightSample light;
         const float choice = sampler_.next();
@@ -64,7 +70,9 @@ class PathState {
         const float share = light.delta ? 1.0f : power_heuristic(light.pdf, value.pdf);
         axes_to_world(value.f);
         const int events = classes_.after(events_, continuous_event(bsdf(), shading, outgoing));
-        add(throughput_.of_unpolarized(light.radiance * (share / light.pdf), value.f, -ray_.direction), events);
+        add(arriving(throughput_, scene_.lights, light.emitter, light.radiance * (share / light.pdf), -light.direction,
+                     value.f, -ray_.direction),
+            events);
     }
 
     // Draws the next direction; false: the path ends.
@@ -78,6 +86,11 @@ class PathState {
             events_, sample.delta ? ScatteringEvent::specular : continuous_event(bsdf(), shading, outgoing));
         axes_to_world(sample.weight);
         throughput_.append(sample.weight, -ray_.direction);
+#ifndef NDEBUG
+        // Tables of measurements need not be realizable.
+        events_realizable_ = events_realizable_ && is_realizable(sample.weight);
+        PATINA_ASSERT(!events_realizable_ || is_realizable(throughput_));
+#endif
         if (sample.dispersed && !hero_only_) {
             hero_only_ = true;
             throughput_.keep_only_hero();
@@ -100,12 +113,20 @@ class PathState {
         throughput_.scale(1 / survival);
         return true;
     }
-    bool carries_light() const { return largest(throughput_.intensity()) > 0; }
+    bool carries_light() const {
+        return largest(throughput_.intensity()) > 0;
+    }
 
   private:
-    const Bsdf& bsdf() const { return scene_.bsdfs[scene_.geometry.shapes[hit_.shape].bsdf]; }
-    ShadingPoint shading_point() const { return {&w_, point_.uv, scene_.bsdfs.data()}; }
-    void add(const StokesPacket& stokes, int events) { record_.add(stokes, classes_.path_class(events)); }
+    const Bsdf& bsdf() const {
+        return scene_.bsdfs[scene_.geometry.shapes[hit_.shape].bsdf];
+    }
+    ShadingPoint shading_point() const {
+        return {&w_, point_.uv, scene_.bsdfs.data()};
+    }
+    void add(const StokesPacket& stokes, int events) {
+        record_.add(stokes, classes_.path_class(events));
+    }
 
     float share_of_scattering(float light_pdf) const {
         return last_delta_ || light_pdf <= 0 ? 1.0f : power_heuristic(last_pdf_, light_pdf);
@@ -134,6 +155,9 @@ class PathState {
     Vec3 last_position_ = Vec3::Zero();
     float last_pdf_ = 0, eta_ = 1;
     bool last_delta_ = true, hero_only_ = false;
+#ifndef NDEBUG
+    bool events_realizable_ = true;
+#endif
 };
 
 }  // namespace

@@ -1,10 +1,11 @@
 #pragma once
-// The three kinds of scattering that light-path expressions tell apart (Heckbert 1990).
+// The kinds of scattering that light-path expressions tell apart (Heckbert 1990, and V for media).
 //
 //   S specular   every delta function: mirrors, smooth interfaces, polarization elements, the mirror part of a paint
 //   D diffuse    the rest of `diffuse`, `orennayar`, `plastic` and `paint` (a body: light that came out of the coating)
 //   G glossy     the rest of every other model: a rough metal's lobe, a table, a lobe and a body that are not told
 //   apart
+//   V volume     scattering by the particles of a medium
 //
 // A model is one kind for all that is not a delta function; it may say which by a member
 // `ScatteringEvent scattering_event(const ShadingPoint&, const Vec3& outgoing) const`. Models made of others are what
@@ -18,7 +19,8 @@
 
 namespace patina::render {
 
-enum class ScatteringEvent : std::uint8_t { diffuse, glossy, specular };
+enum class ScatteringEvent : std::uint8_t { diffuse, glossy, specular, volume };
+inline constexpr int scattering_events = 4;
 
 inline ScatteringEvent continuous_event(const Bsdf& bsdf, const ShadingPoint& point, const Vec3& outgoing);
 
