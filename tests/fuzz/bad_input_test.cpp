@@ -73,6 +73,8 @@ class BadInput : public ::testing::Test {
 
     // The file of a reader that takes a path.
     fs::path write(const std::string& name, const std::string& bytes) const {
+        // A new file: file systems flush one that is written over, which takes far longer than to read it.
+        fs::remove(folder_ / name);
         std::ofstream(folder_ / name, std::ios::binary) << bytes;
         return folder_ / name;
     }
@@ -278,7 +280,7 @@ TEST_F(BadInput, Pictures) {
     picture.rgb.assign(12 * 12, 0.25f);
     picture.alpha.assign(12, 1.0f);
     io::write_stokes_exr(folder() / "good.exr", picture);
-    try_binary(read_text_file(folder() / "good.exr"), rounds(300), "exr",
+    try_binary(read_text_file(folder() / "good.exr"), rounds(100), "exr",
                [&](const std::string& bytes) { io::read_stokes_exr(write("picture.exr", bytes)); });
     Bitmap bitmap{"", 2, 2, {"R", "G", "B"}, std::vector<float>(12, 0.5f)};
     io::write_png(folder() / "good.png", bitmap);
