@@ -16,7 +16,7 @@ struct Options {
     int streams = 0;
     double tolerance = 1e-3;
     std::string solver = "doubling";
-    bool dry_run = false;
+    bool dry_run = false, resume = false;
 };
 
 void print_plan(const Console& console, const jobs::SolvePlan& plan) {
@@ -61,9 +61,14 @@ int run(const Options& options, Session& session) {
     }
     if (options.output.empty()) throw Error(ErrorKind::usage, "patina solve needs -o OUT.h5 (or --dry-run)");
     expect_writable(options.output);
+    request.checkpoint = options.output + ".checkpoint";
+    request.resume = options.resume;
+    if (options.resume && !std::filesystem::exists(request.checkpoint))
+        console.note(fmt::format("note: no {}: nothing to resume, all is solved", request.checkpoint.string()));
 
     const jobs::SolveResult result = jobs::solve(recipe, request, session.control());
     io::write_table_hdf5(result.table, options.output);
+    if (!result.interrupted) std::filesystem::remove(request.checkpoint);
     console.end_progress();
     for (const std::string& note : result.plan.notes) console.note("note: " + note);
     console.result(fmt::format(
@@ -81,10 +86,13 @@ int run(const Options& options, Session& session) {
                       {"relative_error", result.relative_error},
                       {"plan", to_json(result.plan)},
                       {"interrupted", result.interrupted},
+                      {"resumed", result.resumed},
                       {"converged", result.converged},
                       {"body", albedos(result.table)}});
     if (result.interrupted) {
-        console.note("stopped early: the table holds the wavelengths that were done");
+        console.note(
+            "stopped early: the table holds the wavelengths that were done; the same command with --resume solves the "
+            "rest");
         return static_cast<int>(ErrorKind::interrupted);
     }
     console.hint(fmt::format("patina plot {} -o lobe.svg --kind lobe", options.output));
@@ -109,6 +117,7 @@ void add_solve(CLI::App& program, Session& session) {
     command->add_option("--set", options->settings, "change a key of the recipe: layers.0.thickness_um=30 (repeatable)")
         ->take_all()
         ->allow_extra_args(false);
+    command->add_flag("--resume", options->resume, "go on where the same command was stopped or killed");
     command->add_flag("--dry-run", options->dry_run, "say what would be done");
     command->footer("example: patina solve examples/tio2_on_aluminium.toml -o tio2.h5 --wavelengths 400:700:10");
     command->callback([options, &session] { session.chosen = [options, &session] { return run(*options, session); }; });

@@ -1,14 +1,18 @@
 #include "patina/jobs/solve.h"
 
 #include <atomic>
+#include <memory>
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "patina/coating/optical_problem.h"
 #include "patina/core/constants.h"
 #include "patina/core/error.h"
 #include "patina/core/parallel.h"
+#include "patina/jobs/checkpoint.h"
+#include "patina/jobs/solve_checkpoint.h"
 #include "patina/jobs/stream_choice.h"
 #include "patina/version.h"
 
@@ -144,6 +148,25 @@ brdf::Provenance provenance(const coating::Recipe& recipe, const SolveRequest& r
     return p;
 }
 
+// What the checkpoint's results depend on, in the order in which a difference is told.
+Checkpoint::Identity identity(const coating::Recipe& recipe, const SolveRequest& request,
+                              const std::vector<double>& wavelengths_nm, const std::vector<OpticalProblem>& problems) {
+    std::vector<rt::Problem> of_transfer;
+    for (const OpticalProblem& optical : problems) of_transfer.push_back(optical.problem);
+    return {{"recipe", recipe.text},
+            {"solver", request.solver},
+            {"tolerance", fmt::format("{:g}", request.tolerance)},
+            {"number of streams", request.streams == 0 ? "chosen" : std::to_string(request.streams)},
+            {"list of wavelengths", fmt::format("{}", fmt::join(wavelengths_nm, ", "))},
+            {"version of patina", PATINA_VERSION},
+            {"set of optical constants", fingerprint_of(of_transfer)}};
+}
+
+std::unique_ptr<Checkpoint> open_checkpoint(const SolveRequest& request, const Checkpoint::Identity& identity) {
+    if (request.checkpoint.empty()) return std::make_unique<Checkpoint>();
+    return std::make_unique<Checkpoint>(request.checkpoint, identity, request.resume);
+}
+
 // One run of the table's wavelengths with a number of streams.
 struct Run {
     int streams = 0;
@@ -162,7 +185,9 @@ class Solving {
           solver_(rt::solver_named(request.solver)),
           wavelengths_nm_(chosen_wavelengths(recipe, request)),
           problems_(set_up(recipe, wavelengths_nm_, request, control)),
-          references_(solver_, recipe, wavelengths_nm_, scattering_tolerance(request), fourier_tolerance(request)),
+          checkpoint_(open_checkpoint(request, identity(recipe, request, wavelengths_nm_, problems_))),
+          references_(solver_, recipe, wavelengths_nm_, scattering_tolerance(request), fourier_tolerance(request),
+                      *checkpoint_),
           pilots_(pilot_wavelengths(problems_)) {
         check_streams(request.streams);
         for (const OpticalProblem& optical : problems_) {
@@ -187,6 +212,7 @@ class Solving {
 
   private:
     Run solve_all(int streams);
+    SolvedWavelength solve_one(size_t w, int streams);
     // Upper bounds of the error at each wavelength, 1/sr.
     std::vector<double> estimate(const Run& run);
     double stream_error(const Run& run, size_t w);
@@ -200,6 +226,7 @@ class Solving {
     const rt::Solver& solver_;
     std::vector<double> wavelengths_nm_;
     std::vector<OpticalProblem> problems_;
+    std::unique_ptr<Checkpoint> checkpoint_;
     References references_;
     std::vector<size_t> pilots_;
 };
@@ -214,23 +241,35 @@ Run Solving::solve_all(int streams) {
             {}};
     run.pilots.resize(count);
     std::atomic<int> finished = 0;
-    const rt::SolveOptions options{.streams = streams, .fourier_tolerance = fourier_tolerance(request_)};
-    const rt::SolveOptions half{.streams = half_streams(streams), .fourier_tolerance = fourier_tolerance(request_)};
     parallel_for(0, count, [&](std::ptrdiff_t w) {
         if (control_.stop_requested()) return;
-        run.reflections[w] = solver_.reflection(problems_[w].problem, options);
-        if (!is_statistical(solver_)) {
-            brdf::MuellerGrid grid = between_nodes(run.reflections[w]);
-            run.scale[w] = largest_intensity(grid);
-            run.difference_from_half[w] =
-                largest_difference(grid, between_nodes(solver_.reflection(problems_[w].problem, half)));
-            if (std::binary_search(pilots_.begin(), pilots_.end(), static_cast<size_t>(w)))
-                run.pilots[w] = std::move(grid);
-        }
+        SolvedWavelength solved = solve_one(w, streams);
+        if (!is_statistical(solver_) && std::binary_search(pilots_.begin(), pilots_.end(), static_cast<size_t>(w)))
+            run.pilots[w] = between_nodes(solved.reflection);
+        run.reflections[w] = std::move(solved.reflection);
+        run.scale[w] = solved.scale;
+        run.difference_from_half[w] = solved.difference_from_half;
         run.done[w] = 1;
         control_.report({"solving", ++finished, count, fmt::format("{:g} nm", wavelengths_nm_[w])});
     });
     return run;
+}
+
+SolvedWavelength Solving::solve_one(size_t w, int streams) {
+    const std::string key = fmt::format("table of {} streams at {} nm", streams, wavelengths_nm_[w]);
+    if (const auto kept = checkpoint_->find(key))
+        if (auto solved = to_solved_wavelength(*kept)) return std::move(*solved);
+    const rt::Problem& problem = problems_[w].problem;
+    rt::SolveOptions options{.streams = streams, .fourier_tolerance = fourier_tolerance(request_)};
+    SolvedWavelength solved{solver_.reflection(problem, options)};
+    if (!is_statistical(solver_)) {
+        const brdf::MuellerGrid grid = between_nodes(solved.reflection);
+        options.streams = half_streams(streams);
+        solved.scale = largest_intensity(grid);
+        solved.difference_from_half = largest_difference(grid, between_nodes(solver_.reflection(problem, options)));
+    }
+    checkpoint_->add(key, to_values(solved));
+    return solved;
 }
 
 // The part of the error that more streams would take away, from solutions of finer single scattering.
@@ -287,6 +326,7 @@ void Solving::fill(brdf::MuellerTable& table, Run& run) const {
 
 SolveResult Solving::run(const coating::Recipe& recipe) {
     SolveResult result;
+    result.resumed = checkpoint_->found_at_start();
     result.plan = plan();
     int& streams = result.plan.streams;
 

@@ -1,6 +1,7 @@
 #pragma once
 // Recipe in, Mueller BRDF table out: every wavelength's problem is set up and solved.
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,10 @@ struct SolveRequest {
     double tolerance = 1e-3;
     std::string solver = "doubling";
     std::string command;  // for provenance
+    // Where finished wavelengths are kept while the job runs; empty: nowhere. The caller removes the file when the
+    // result is safe.
+    std::filesystem::path checkpoint;
+    bool resume = false;  // go on with the checkpoint of the same job, if there is one; the same bits come out
 };
 
 struct SolvePlan {
@@ -36,14 +41,15 @@ struct SolveResult {
     bool interrupted = false;     // the table holds the wavelengths that were done
     bool converged = true;        // every wavelength's error estimate is within the tolerance
     double relative_error = 0.0;  // largest error estimate in the units of `tolerance`
+    std::size_t resumed = 0;      // results taken from the checkpoint
 };
 
 // What solve() would do, without solving.
 SolvePlan plan_solve(const coating::Recipe& recipe, const SolveRequest& request);
 
 // Wavelengths run in parallel; the result does not depend on the number of threads.
-// Throws Error(input) for what the recipe or the solver cannot do, Error(interrupted) when stopped before anything is
-// done.
+// Throws Error(input) for what the recipe or the solver cannot do and for a checkpoint of another job,
+// Error(interrupted) when stopped before anything is done, Error(runtime) when the checkpoint cannot be written.
 SolveResult solve(const coating::Recipe& recipe, const SolveRequest& request, const JobControl& control = {});
 
 }  // namespace patina::jobs
