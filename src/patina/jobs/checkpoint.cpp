@@ -8,7 +8,7 @@
 
 #include "patina/core/error.h"
 #include "patina/core/files.h"
-#include "patina/jobs/fingerprint.h"
+#include "patina/core/fingerprint.h"
 
 namespace patina::jobs {
 

@@ -1,6 +1,6 @@
 #include "patina/jobs/solve_checkpoint.h"
 
-#include "patina/jobs/fingerprint.h"
+#include "patina/rt/problem_fingerprint.h"
 
 namespace patina::jobs {
 
@@ -30,31 +30,9 @@ std::optional<SolvedWavelength> to_solved_wavelength(std::span<const double> val
     return solved;
 }
 
-namespace {
-
-void add(Fingerprint& fingerprint, const rt::Layer& layer) {
-    fingerprint.add(layer.optical_thickness);
-    fingerprint.add(layer.single_scattering_albedo);
-    fingerprint.add(layer.refractive_index);
-    const optics::ExpansionCoefficients& x = layer.expansion;
-    for (const auto* list : {&x.alpha1, &x.alpha2, &x.alpha3, &x.alpha4, &x.beta1, &x.beta2})
-        for (const double value : *list) fingerprint.add(value);
-}
-
-}  // namespace
-
 std::string fingerprint_of(const std::vector<rt::Problem>& problems) {
     Fingerprint fingerprint;
-    for (const rt::Problem& problem : problems) {
-        fingerprint.add(problem.refractive_index_above);
-        for (const rt::Layer& layer : problem.layers) add(fingerprint, layer);
-        if (const auto* lambertian = std::get_if<rt::LambertianBase>(&problem.base))
-            fingerprint.add(lambertian->reflectance);
-        if (const auto* metal = std::get_if<rt::MetalBase>(&problem.base)) {
-            fingerprint.add(metal->refractive_index.real());
-            fingerprint.add(metal->refractive_index.imag());
-        }
-    }
+    for (const rt::Problem& problem : problems) rt::add_to(fingerprint, problem);
     return fingerprint.hex();
 }
 

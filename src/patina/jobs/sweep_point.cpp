@@ -10,7 +10,7 @@
 #include "patina/coating/paint_metrics_colour.h"
 #include "patina/core/error.h"
 #include "patina/core/files.h"
-#include "patina/jobs/fingerprint.h"
+#include "patina/core/fingerprint.h"
 #include "patina/version.h"
 
 namespace patina::jobs {

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace patina::jobs {
+namespace patina {
 
 // The Fowler-Noll-Vo hash FNV-1a of 64 bits; no protection against who wants two inputs to look alike.
 class Fingerprint {
@@ -30,4 +30,4 @@ class Fingerprint {
     std::uint64_t value_ = 0xcbf29ce484222325;
 };
 
-}  // namespace patina::jobs
+}  // namespace patina
