@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "command.h"
 #include <fmt/format.h>
 
@@ -29,6 +31,7 @@ void print_plan(const Console& console, const jobs::SolvePlan& plan) {
 
 nlohmann::json to_json(const jobs::SolvePlan& plan) {
     return {{"wavelengths_nm", plan.wavelengths_nm},
+            {"wavelength_error", plan.wavelength_error ? nlohmann::json(*plan.wavelength_error) : nlohmann::json()},
             {"streams", plan.streams},
             {"expansion_order", plan.largest_expansion_order},
             {"notes", plan.notes}};
@@ -43,10 +46,26 @@ nlohmann::json albedos(const brdf::MuellerTable& table) {
     return rows;
 }
 
+// A list, or auto for 380 to 780 nm, or auto:FROM:TO.
+void choose_wavelengths(const std::string& text, jobs::SolveRequest& request) {
+    if (text == "auto") {
+        request.automatic_range_nm = {380.0, 780.0};
+    } else if (text.starts_with("auto:")) {
+        std::string ends = text.substr(5);
+        std::replace(ends.begin(), ends.end(), ':', ',');
+        const std::vector<double> values = parse_number_list(ends, "--wavelengths");
+        if (values.size() != 2)
+            throw Error(ErrorKind::usage, fmt::format("--wavelengths {}: write auto or auto:380:780", text));
+        request.automatic_range_nm = {values[0], values[1]};
+    } else if (!text.empty()) {
+        request.wavelengths_nm = parse_number_list(text, "--wavelengths");
+    }
+}
+
 int run(const Options& options, Session& session) {
     const coating::Recipe recipe = coating::read_recipe(options.recipe, options.settings);
     jobs::SolveRequest request;
-    if (!options.wavelengths.empty()) request.wavelengths_nm = parse_number_list(options.wavelengths, "--wavelengths");
+    choose_wavelengths(options.wavelengths, request);
     request.streams = options.streams;
     request.tolerance = options.tolerance;
     request.solver = options.solver;
@@ -107,7 +126,8 @@ void add_solve(CLI::App& program, Session& session) {
         program.add_subcommand("solve", "compute the 4x4 Mueller BRDF of a recipe, wavelength by wavelength");
     command->add_option("recipe", options->recipe, "paint recipe (TOML)")->required();
     command->add_option("-o,--output", options->output, "BRDF table to write (HDF5)");
-    command->add_option("--wavelengths", options->wavelengths, "vacuum wavelengths in nm: 380:780:5 or 450,550,650");
+    command->add_option("--wavelengths", options->wavelengths,
+                        "vacuum wavelengths in nm: 380:780:5 or 450,550,650; auto or auto:380:780 chooses them");
     command->add_option("--streams", options->streams,
                         "quadrature nodes per hemisphere in air (default: from the tolerance)");
     command->add_option("--tolerance", options->tolerance, "relative accuracy wanted")

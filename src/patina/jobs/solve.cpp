@@ -14,6 +14,7 @@
 #include "patina/jobs/checkpoint.h"
 #include "patina/jobs/solve_checkpoint.h"
 #include "patina/jobs/stream_choice.h"
+#include "patina/jobs/wavelength_choice.h"
 #include "patina/version.h"
 
 namespace patina::jobs {
@@ -34,13 +35,19 @@ void check_wavelengths(const std::vector<double>& wavelengths_nm) {
     }
 }
 
-std::vector<double> chosen_wavelengths(const coating::Recipe& recipe, const SolveRequest& request) {
+WavelengthChoice chosen_wavelengths(const coating::Recipe& recipe, const SolveRequest& request,
+                                    const JobControl& control) {
     check_wavelengths(request.wavelengths_nm);
-    if (!request.wavelengths_nm.empty()) return request.wavelengths_nm;
-    if (recipe.is_wavelength_independent()) return {550.0};
+    if (!request.wavelengths_nm.empty()) return {request.wavelengths_nm};
+    if (recipe.is_wavelength_independent()) return {{550.0}};
+    if (request.automatic_range_nm) {
+        const auto [from, to] = *request.automatic_range_nm;
+        check_wavelengths({from, to});
+        return choose_wavelengths(recipe, from, to, request.tolerance, control);
+    }
     std::vector<double> visible;
     for (int wavelength = 380; wavelength <= 780; wavelength += 5) visible.push_back(wavelength);
-    return visible;
+    return {visible};
 }
 
 // Relative accuracy asked of cross sections and expansion coefficients, and the largest share of f00 that it was seen
@@ -97,7 +104,7 @@ void check_streams(int streams) {
 }
 
 SolvePlan make_plan(const std::vector<double>& wavelengths_nm, const std::vector<OpticalProblem>& problems) {
-    SolvePlan plan{wavelengths_nm, 0, 0, {}, {}};
+    SolvePlan plan{wavelengths_nm, {}, 0, 0, {}, {}};
     std::set<std::string> notes, citations;
     for (const OpticalProblem& optical : problems) {
         plan.largest_expansion_order = std::max(plan.largest_expansion_order, order_of(optical));
@@ -183,7 +190,8 @@ class Solving {
         : request_(request),
           control_(control),
           solver_(rt::solver_named(request.solver)),
-          wavelengths_nm_(chosen_wavelengths(recipe, request)),
+          wavelength_choice_(chosen_wavelengths(recipe, request, control)),
+          wavelengths_nm_(wavelength_choice_.wavelengths_nm),
           problems_(set_up(recipe, wavelengths_nm_, request, control)),
           checkpoint_(open_checkpoint(request, identity(recipe, request, wavelengths_nm_, problems_))),
           references_(solver_, recipe, wavelengths_nm_, scattering_tolerance(request), fourier_tolerance(request),
@@ -200,6 +208,7 @@ class Solving {
 
     SolvePlan plan() {
         SolvePlan plan = make_plan(wavelengths_nm_, problems_);
+        tell_wavelength_error(plan);
         plan.streams = request_.streams;
         if (plan.streams == 0)
             plan.streams = is_statistical(solver_)
@@ -211,6 +220,7 @@ class Solving {
     SolveResult run(const coating::Recipe& recipe);
 
   private:
+    void tell_wavelength_error(SolvePlan& plan) const;
     Run solve_all(int streams);
     SolvedWavelength solve_one(size_t w, int streams);
     // Upper bounds of the error at each wavelength, 1/sr.
@@ -224,12 +234,21 @@ class Solving {
     const SolveRequest& request_;
     const JobControl& control_;
     const rt::Solver& solver_;
+    WavelengthChoice wavelength_choice_;
     std::vector<double> wavelengths_nm_;
     std::vector<OpticalProblem> problems_;
     std::unique_ptr<Checkpoint> checkpoint_;
     References references_;
     std::vector<size_t> pilots_;
 };
+
+void Solving::tell_wavelength_error(SolvePlan& plan) const {
+    if (!request_.automatic_range_nm || wavelengths_nm_.size() < 2) return;
+    plan.wavelength_error = wavelength_choice_.interpolation_error;
+    plan.notes.push_back(fmt::format(
+        "{} wavelengths chosen: linear interpolation between them errs by at most {:.1e}{}", wavelengths_nm_.size(),
+        wavelength_choice_.interpolation_error, wavelength_choice_.converged ? "" : ", more than the tolerance"));
+}
 
 Run Solving::solve_all(int streams) {
     const std::ptrdiff_t count = std::ssize(problems_);

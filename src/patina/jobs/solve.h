@@ -2,6 +2,7 @@
 // Recipe in, Mueller BRDF table out: every wavelength's problem is set up and solved.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,10 @@ namespace patina::jobs {
 struct SolveRequest {
     std::vector<double>
         wavelengths_nm;  // ascending; empty = 380 to 780 nm every 5 nm, or one for a recipe without colour
-    int streams = 0;     // quadrature nodes per hemisphere in air; 0 = chosen from the tolerance
+    // With no wavelengths given: chosen between these two, so that linear interpolation between them errs by less than
+    // the tolerance.
+    std::optional<std::pair<double, double>> automatic_range_nm;
+    int streams = 0;  // quadrature nodes per hemisphere in air; 0 = chosen from the tolerance
     // Largest error of any element of the body BRDF between zenith angles of 0 and 85 deg, both ways, in units of the
     // largest f00 there at the same wavelength.
     double tolerance = 1e-3;
@@ -29,6 +33,8 @@ struct SolveRequest {
 
 struct SolvePlan {
     std::vector<double> wavelengths_nm;
+    // Of linear interpolation between chosen wavelengths, in the units of `tolerance`; nothing when they were given.
+    std::optional<double> wavelength_error;
     int streams = 0;
     int largest_expansion_order = 0;
     std::vector<std::string> notes;      // sorted, each once
