@@ -91,8 +91,10 @@ float emitted_power(const Emitter& emitter, const Geometry& geometry) {
     return std::visit(PowerOf{geometry}, emitter);
 }
 
-Lights::Lights(std::vector<Emitter> emitters, const Geometry& geometry)
-    : emitters_(std::move(emitters)), slot_(emitters_.size(), -1) {
+Lights::Lights(std::vector<Emitter> emitters, const Geometry& geometry, std::vector<EmitterPolarization> states)
+    : emitters_(std::move(emitters)), states_(std::move(states)), slot_(emitters_.size(), -1) {
+    states_.resize(emitters_.size());
+    for (const EmitterPolarization& state : states_) any_polarized_ |= state.polarized();
     std::vector<double> powers;
     for (int i = 0; i < static_cast<int>(emitters_.size()); ++i) {
         const bool constant = std::holds_alternative<ConstantEmitter>(emitters_[i]);

@@ -33,41 +33,43 @@ void add_shapes(std::vector<PluginDescriptor>& all) {
                {"flip_tex_coords", "boolean", "", "true for obj", "", "v counts from the top of the texture"}});
 }
 
+const std::vector<ParameterDescriptor> polarization = {
+    {"polarization", "string", "", "unpolarized", "unpolarized, linear, circular, elliptical", "state of the light"},
+    {"polarization_degree", "number", "", "1", "0 .. 1", "degree of polarization"},
+    {"polarization_angle", "number", "degree", "0", "-360 .. 360", "of the ellipse's long axis from polarization_axis"},
+    {"polarization_ellipticity", "number", "degree", "45 (circular), 22.5", "-45 .. 45", "> 0 right-handed"},
+    {"polarization_axis", "vector", "", "own x axis; surroundings y", "", "where angles count from"},
+    {"stokes", "string", "", "", "Q^2 + U^2 + V^2 <= I^2", "I, Q, U, V instead of the words"}};
+
 void add_emitters(std::vector<PluginDescriptor>& all) {
-    all.push_back({"emitter",
-                   "area",
-                   "A shape that shines from its outside.",
-                   {{"radiance", "spectrum", "W/(m^2 sr nm)", "1", ">= 0", "the same into every direction"}}});
-    all.push_back({"emitter",
-                   "point",
-                   "A point that shines into every direction.",
-                   {{"position", "point", "scene units", "0, 0, 0", "", "its place"},
-                    to_world,
-                    {"intensity", "spectrum", "W/(sr nm)", "1", ">= 0", "radiant intensity"}}});
-    all.push_back(
-        {"emitter",
-         "spot",
-         "A cone of light along +z.",
-         {to_world,
-          {"intensity", "spectrum", "W/(sr nm)", "1", ">= 0", "radiant intensity inside beam_width"},
-          {"cutoff_angle", "number", "degree", "20", "0 .. 180", "beyond it nothing"},
-          {"beam_width", "number", "degree", "3/4 of cutoff_angle", "0 .. cutoff_angle", "until it constant"}}});
-    all.push_back({"emitter",
-                   "directional",
-                   "Parallel light.",
-                   {{"direction", "vector", "", "+z through to_world", "", "in which the light travels"},
-                    to_world,
-                    {"irradiance", "spectrum", "W/(m^2 nm)", "1", ">= 0", "on a plane across the light"}}});
-    all.push_back({"emitter",
-                   "constant",
-                   "The same radiance from everywhere.",
-                   {{"radiance", "spectrum", "W/(m^2 sr nm)", "1", ">= 0", "of the surroundings"}}});
-    all.push_back({"emitter",
-                   "envmap",
-                   "Surroundings as a latitude-longitude picture, y up.",
-                   {{"filename", "path", "", "", "", "the picture"},
-                    {"scale", "number", "", "1", ">= 0", "factor on its radiance"},
-                    to_world}});
+    const auto emitter = [&](const char* name, const char* doc, std::vector<ParameterDescriptor> parameters) {
+        parameters.insert(parameters.end(), polarization.begin(), polarization.end());
+        all.push_back({"emitter", name, doc, std::move(parameters)});
+    };
+    const ParameterDescriptor sun = {"sun_direction", "vector", "",
+                                     "0, 1, 0",       "",       "towards the sun, for polarization \"rayleigh\""};
+    emitter("area", "A shape that shines from its outside.",
+            {{"radiance", "spectrum", "W/(m^2 sr nm)", "1", ">= 0", "the same into every direction"}});
+    emitter("point", "A point that shines into every direction.",
+            {{"position", "point", "scene units", "0, 0, 0", "", "its place"},
+             to_world,
+             {"intensity", "spectrum", "W/(sr nm)", "1", ">= 0", "radiant intensity"}});
+    emitter("spot", "A cone of light along +z.",
+            {to_world,
+             {"intensity", "spectrum", "W/(sr nm)", "1", ">= 0", "radiant intensity inside beam_width"},
+             {"cutoff_angle", "number", "degree", "20", "0 .. 180", "beyond it nothing"},
+             {"beam_width", "number", "degree", "3/4 of cutoff_angle", "0 .. cutoff_angle", "until it constant"}});
+    emitter("directional", "Parallel light.",
+            {{"direction", "vector", "", "+z through to_world", "", "in which the light travels"},
+             to_world,
+             {"irradiance", "spectrum", "W/(m^2 nm)", "1", ">= 0", "on a plane across the light"}});
+    emitter("constant", "The same radiance from everywhere.",
+            {{"radiance", "spectrum", "W/(m^2 sr nm)", "1", ">= 0", "of the surroundings"}, to_world, sun});
+    emitter("envmap", "Surroundings as a latitude-longitude picture, y up.",
+            {{"filename", "path", "", "", "", "the picture"},
+             {"scale", "number", "", "1", ">= 0", "factor on its radiance"},
+             to_world,
+             sun});
 }
 
 void add_camera(std::vector<PluginDescriptor>& all) {

@@ -24,7 +24,10 @@ class SceneBuilder {
         for (const auto& node : root_.children_of("bsdf")) bsdf_index(node);
         for (const auto& node : root_.children_of("medium")) medium_index(node);
         for (const auto& node : root_.children_of("shape")) build_shape(*node);
-        for (const auto& node : root_.children_of("emitter")) emitters_.push_back(build_emitter(*node, resources_));
+        for (const auto& node : root_.children_of("emitter")) {
+            states_.push_back(build_polarization(*node, node->transform("to_world")));
+            emitters_.push_back(build_emitter(*node, resources_));
+        }
         root_.children_of("texture");  // named ones, built where they are referenced
         root_.expect_all_used({"integrator", "sensor", "bsdf", "shape", "emitter", "texture", "medium"});
         if (emitters_.empty())
@@ -32,7 +35,7 @@ class SceneBuilder {
                               "add one, for instance \"constant\"");
         scene_->geometry.needs_uv = any_texture(root_);
         scene_->geometry.commit();
-        scene_->lights = Lights(std::move(emitters_), scene_->geometry);
+        scene_->lights = Lights(std::move(emitters_), scene_->geometry, std::move(states_));
         return scene_;
     }
 
@@ -106,6 +109,7 @@ class SceneBuilder {
         scene_->geometry.shapes[index].exterior = side_medium(node, "exterior");
         if (const auto emitter = node.only_child("emitter")) {
             scene_->geometry.shapes[index].emitter = static_cast<int>(emitters_.size());
+            states_.push_back(build_polarization(*emitter, node.transform("to_world")));
             emitters_.push_back(AreaEmitter{index, build_area_radiance(*emitter)});
         }
         expect_known_properties(node);
@@ -125,6 +129,7 @@ class SceneBuilder {
     std::map<const Properties*, int> medium_of_node_;
     int default_bsdf_ = -1;
     std::vector<Emitter> emitters_;
+    std::vector<EmitterPolarization> states_;  // of the emitters
 };
 
 }  // namespace

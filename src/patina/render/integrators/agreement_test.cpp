@@ -3,7 +3,7 @@
 //
 // Each picture is rendered several times with independent seeds; blocks of it are compared by Welch's t with its
 // degrees of freedom, and the smallest p of a pair of pictures is judged by Bonferroni's rule at 1e-5 a pair: with some
-// twenty pairs in this file a false alarm has a chance below 2e-4. The seeds are fixed, so what passes once, passes.
+// thirty pairs in this file a false alarm has a chance below 3e-4. The seeds are fixed, so what passes once, passes.
 
 #include <algorithm>
 
@@ -207,6 +207,38 @@ TEST(Agreement, PolarizedSpecularScene) {
     // The same part of the paths in both directions of work.
     expect_agreement(measure(*scene, "path", 64, "LSS+.*DE"), measure(*scene, "bidirectional", 32, "LSS+.*DE", 100),
                      "caustics");
+}
+
+// Lamps of every kind, each polarized in another way, over rough metal.
+Node polarized_lamps_scene() {
+    const Value linear{"polarization", std::string("linear")}, circular{"polarization", std::string("circular")};
+    const Node area =
+        node("shape", "rectangle", {{"to_world", Eigen::Matrix4d(translate({0, 0, 2}) * rotate_x(180))}},
+             {node("emitter", "area", {uniform("radiance", 1), {"stokes", std::string("1, 0.5, 0.3, 0.6")}})});
+    const Node point =
+        node("emitter", "point", {{"position", Vector3d(-1.5, -1, 1.5)}, uniform("intensity", 1), linear});
+    const Node spot = node("emitter", "spot",
+                           {{"to_world", look_at({1.5, -2, 2}, {0.3, 0, 0}, {0, 0, 1})},
+                            {"cutoff_angle", 40.0},
+                            uniform("intensity", 3),
+                            circular});
+    const Node sun =
+        node("emitter", "directional", {{"direction", Vector3d(1, 1, -1)}, uniform("irradiance", 0.3), linear});
+    const Node sky = node("emitter", "constant", {uniform("radiance", 0.2), {"polarization", std::string("rayleigh")}});
+    return scene({path(4), camera(), area, point, spot, sun, sky, floor(0.6), wall(rough(0.4)), ball(0.5, rough()),
+                  ball(-0.6, rough(0.5))});
+}
+
+// The state of the light reaches the camera alike from hits, light sampling and light paths.
+TEST(Agreement, PolarizedLamps) {
+    const auto lit = build_scene(*polarized_lamps_scene(), {});
+    const Measurements by_path = measure(*lit, "path", 96), by_both = measure(*lit, "bidirectional", 48, "", 100);
+    expect_agreement(by_path, by_both, "path, bidirectional");
+    expect_agreement(by_path, measure(*lit, "light", 192, "", 200), "path, light");
+    expect_agreement(measure(*lit, "appel", 8), measure(*lit, "path", 8, "E(D|G)L", 100), "appel");
+    expect_agreement(measure(*lit, "distribution", 4), measure(*lit, "path", 16, "E(S|G)*(D|G)?L", 100),
+                     "distribution");
+    for (int component : {1, 2, 3}) EXPECT_GT(significance(by_path, component), 10) << component;
 }
 
 TEST(Agreement, RayTreesAreThePathsOfTheirGrammar) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "patina/render/arriving_light.h"
 #include "patina/render/integrators/subpath.h"
 
 namespace patina::render {
@@ -62,11 +63,12 @@ class Joiner {
         const PathVertex& v = camera_[t - 1];
         const int path_class = c_.problem.classes.path_class(v.events);
         const Lights& lights = c_.scene().lights;
-        const auto add = [&](Float4 radiance, float origin_pdf, float ray_pdf, float direct_pdf) {
+        const auto add = [&](int emitter, Float4 radiance, float origin_pdf, float ray_pdf, float direct_pdf) {
             if (largest(radiance) <= 0) return;
             double share = 1;
             if (weighted_ && t > 2) share = share_of(0, t, v, origin_pdf, ray_pdf, direct_pdf, false);
-            record_.add(v.throughput.of_unpolarized(radiance * static_cast<float>(share)), path_class);
+            record_.add(arriving(v.throughput, lights, emitter, radiance * static_cast<float>(share), v.to_previous),
+                        path_class);
         };
         if (v.kind == PathVertex::Kind::infinity) {
             for (int e : lights.environments()) {
@@ -81,14 +83,14 @@ class Joiner {
                     radiance = map.radiance(c_.w, direction);
                     map_pdf = map.pdf(direction);
                 }
-                add(radiance, origin_pdf, ray_pdf, lights.choice_probability(e) * map_pdf);
+                add(e, radiance, origin_pdf, ray_pdf, lights.choice_probability(e) * map_pdf);
             }
         } else if (v.emitter >= 0) {
             float origin_pdf = 0, ray_pdf = 0;
             c_.emission.surface_pdfs(v.emitter, v.to_previous.dot(v.point.geometric_normal), origin_pdf, ray_pdf);
             const float direct =
                 lights.surface_pdf(v.emitter, c_.scene().geometry, v.hit, v.point, camera_[t - 2].position());
-            add(lights.surface_radiance(v.emitter, v.point, v.to_previous, c_.w), origin_pdf, ray_pdf,
+            add(v.emitter, lights.surface_radiance(v.emitter, v.point, v.to_previous, c_.w), origin_pdf, ray_pdf,
                 static_cast<float>(per_area(direct, camera_[t - 2].position(), v)));
         }
     }
@@ -127,7 +129,8 @@ class Joiner {
         }
         const int events = c_.problem.classes.after(v.events, c_.event(v, v.to_previous));
         record_.add(
-            v.throughput.of_unpolarized(light.radiance * static_cast<float>(share / light.pdf), value.f, v.to_previous),
+            arriving(v.throughput, scene.lights, light.emitter, light.radiance * static_cast<float>(share / light.pdf),
+                     -light.direction, value.f, v.to_previous),
             c_.problem.classes.path_class(events));
     }
 

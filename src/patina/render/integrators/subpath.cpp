@@ -133,7 +133,7 @@ void trace_light_path(const SubpathContext& context, int most_vertices, Sampler&
     path.push_back(lamp);
 
     Ray ray{emitted.position, emitted.direction, INFINITY};
-    LightBeam beam = LightBeam::unpolarized(emitted.power, emitted.direction);
+    LightBeam beam = context.scene().lights.beam(emitted.emitter, emitted.power, emitted.direction);
     const float emitted_power = largest(emitted.power);
     bool hero_only = false;
     double pdf = emitted.ray_pdf;
