@@ -2,7 +2,7 @@
 // The kinds of scattering that light-path expressions tell apart (Heckbert 1990, and V for media).
 //
 //   S specular   every delta function: mirrors, smooth interfaces, polarization elements, the mirror part of a paint
-//   D diffuse    the rest of `diffuse` and of `paint` (its body: light that came out of the coating)
+//   D diffuse    the rest of `diffuse`, `dipole` and `paint` (its body: light that came out of the coating)
 //   G glossy     the rest of every other model, a rough conductor's lobe for instance
 //   V volume     scattering by the particles of a medium
 //
@@ -30,7 +30,8 @@ inline ScatteringEvent continuous_event(const Bsdf& bsdf, const ShadingPoint& po
             } else if constexpr (std::is_same_v<Model, TwoSided>) {
                 return continuous_event(nested_bsdf(point, outgoing.z() > 0 ? model.front : model.back), point,
                                         outgoing);
-            } else if constexpr (std::is_same_v<Model, Diffuse> || std::is_same_v<Model, Paint>) {
+            } else if constexpr (std::is_same_v<Model, Diffuse> || std::is_same_v<Model, Paint> ||
+                                 std::is_same_v<Model, Dipole>) {
                 return ScatteringEvent::diffuse;
             } else {
                 return ScatteringEvent::glossy;
