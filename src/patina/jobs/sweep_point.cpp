@@ -79,10 +79,22 @@ class Constants {
     }
     void add(const coating::Composition& layer) {
         add(layer.binder);
-        for (const coating::Pigment& pigment : layer.pigments) add(pigment.material);
+        for (const coating::Pigment& pigment : layer.pigments)
+            std::visit([&](const auto& particles) { add(particles); }, pigment.particles);
     }
-    void add(const coating::OpticalLayer& layer) {
-        const optics::ExpansionCoefficients& x = layer.expansion;
+    void add(const coating::Spheres& spheres) {
+        add(spheres.material);
+        if (spheres.extraordinary) add(*spheres.extraordinary);
+    }
+    void add(const optics::ExternalParticles& particles) {
+        for (const double wavelength : wavelengths_nm_) {
+            const optics::ScatteringProperties p = optics::scatter(particles, wavelength, recipe_.extrapolation);
+            text_ += fmt::format("{} {} ", p.extinction_um2, p.scattering_um2);
+            add(p.expansion);
+        }
+    }
+    void add(const coating::OpticalLayer& layer) { add(layer.expansion); }
+    void add(const optics::ExpansionCoefficients& x) {
         for (const auto* values : {&x.alpha1, &x.alpha2, &x.alpha3, &x.alpha4, &x.beta1, &x.beta2})
             text_ += fmt::format("{} ", fmt::join(*values, " "));
     }

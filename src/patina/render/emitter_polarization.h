@@ -3,13 +3,14 @@
 //
 // A scene gives it on any emitter, in words or as a Stokes vector:
 //
-//   <string name="polarization" value="unpolarized | linear | circular | elliptical | rayleigh"/>
-//   <float  name="polarization_degree" value="1"/>          degree of polarization p
-//   <float  name="polarization_angle" value="0"/>           psi, of the long axis of the ellipse, degrees
-//   <float  name="polarization_ellipticity" value="45"/>    chi, degrees: tan chi = short over long axis, > 0
-//   right-handed <vector name="polarization_axis" value="1, 0, 0"/>      reference direction, in the emitter's own
-//   space <string name="stokes" value="1, 0.5, 0, 0"/>            instead of all but the axis; only ratios to the first
-//   count
+// | property | type | what |
+// |---|---|---|
+// | polarization | string | unpolarized, linear, circular, elliptical or rayleigh |
+// | polarization_degree | float | p, 1 unless given |
+// | polarization_angle | float | psi of the ellipse's long axis, degrees |
+// | polarization_ellipticity | float | chi, degrees: tan chi = short over long axis, > 0 right-handed |
+// | polarization_axis | vector | the reference direction, in the emitter's own space |
+// | stokes | string | "1, 0.5, 0, 0" instead of all but the axis; only ratios to the first count |
 //
 // S = I (1, p cos 2chi cos 2psi, p cos 2chi sin 2psi, p sin 2chi) (Born & Wolf 1999, section 1.4.2), in the frame whose
 // x axis is the reference direction made perpendicular to the direction of travel, and in the renderer's signs

@@ -118,12 +118,23 @@ Lights::Lights(std::vector<Emitter> emitters, const Geometry& geometry, std::vec
 bool Lights::sample(const Geometry& geometry, const Vec3& from, const Wavelengths& w, float u, const Vec2& u2,
                     LightSample& sample) const {
     const DiscreteDistribution::Choice choice = choice_.sample(u);
-    sample.delta = false;
-    sample.distance = INFINITY;
-    sample.emitter = sampled_[choice.index];
-    if (!std::visit(Draw{geometry, from, w, u2, sample}, emitters_[sample.emitter])) return false;
+    if (!sample_emitter(sampled_[choice.index], geometry, from, w, u2, sample)) return false;
     sample.pdf *= choice.probability;
     return true;
+}
+
+bool Lights::sample_emitter(int emitter, const Geometry& geometry, const Vec3& from, const Wavelengths& w,
+                            const Vec2& u2, LightSample& sample) const {
+    sample.delta = false;
+    sample.distance = INFINITY;
+    sample.emitter = emitter;
+    return std::visit(Draw{geometry, from, w, u2, sample}, emitters_[emitter]);
+}
+
+bool Lights::is_delta(int emitter) const {
+    const Emitter& e = emitters_[emitter];
+    return std::holds_alternative<PointEmitter>(e) || std::holds_alternative<SpotEmitter>(e) ||
+           std::holds_alternative<DirectionalEmitter>(e);
 }
 
 }  // namespace patina::render

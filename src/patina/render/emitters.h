@@ -92,6 +92,12 @@ class Lights {
     bool sample(const Geometry& geometry, const Vec3& from, const Wavelengths& w, float u, const Vec2& u2,
                 LightSample& sample) const;
 
+    // The same of one emitter, its choice not in the pdf.
+    bool sample_emitter(int emitter, const Geometry& geometry, const Vec3& from, const Wavelengths& w, const Vec2& u2,
+                        LightSample& sample) const;
+    // Points and parallel light: nothing meets them by chance.
+    bool is_delta(int emitter) const;
+
     // Radiance that leaves a surface towards `outgoing` (world).
     Float4 surface_radiance(int emitter, const SurfacePoint& at, const Vec3& outgoing, const Wavelengths& w) const {
         if (outgoing.dot(at.geometric_normal) <= 0) return splat(0);

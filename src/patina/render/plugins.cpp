@@ -72,18 +72,35 @@ void add_emitters(std::vector<PluginDescriptor>& all) {
              sun});
 }
 
-void add_camera(std::vector<PluginDescriptor>& all) {
-    std::vector<ParameterDescriptor> camera = {
+void add_sensors(std::vector<PluginDescriptor>& all) {
+    const auto sensor = [&](const char* name, const char* doc, std::vector<ParameterDescriptor> parameters) {
+        parameters.push_back({"shutter_open", "number", "s", "0", "", "when light begins to count"});
+        parameters.push_back({"shutter_close", "number", "s", "shutter_open", ">= shutter_open", "and ends"});
+        all.push_back({"sensor", name, doc, std::move(parameters)});
+    };
+    const std::vector<ParameterDescriptor> planes = {
         to_world,
-        {"fov", "number", "degree", "39.6", "0 .. 180", "field of view along fov_axis"},
-        {"fov_axis", "string", "", "x", "x, y, diagonal, smaller, larger", "what fov measures"},
-        {"focal_length", "string", "mm", "50mm", "> 0", "instead of fov, on 36 x 24 mm film"},
         {"near_clip", "number", "scene units", "0.01", "", "accepted, without effect"},
         {"far_clip", "number", "scene units", "10000", "", "accepted, without effect"}};
-    all.push_back({"sensor", "perspective", "Pinhole camera.", camera});
+    std::vector<ParameterDescriptor> camera = planes;
+    camera.push_back({"fov", "number", "degree", "39.6", "0 .. 180", "field of view along fov_axis"});
+    camera.push_back({"fov_axis", "string", "", "x", "x, y, diagonal, smaller, larger", "what fov measures"});
+    camera.push_back({"focal_length", "string", "mm", "50mm", "> 0", "instead of fov, on 36 x 24 mm film"});
+    sensor("perspective", "Pinhole camera.", camera);
     camera.push_back({"aperture_radius", "number", "scene units", "", ">= 0", "of the lens"});
     camera.push_back({"focus_distance", "number", "scene units", "", "> 0", "of the plane in focus"});
-    all.push_back({"sensor", "thinlens", "Camera with depth of field.", camera});
+    sensor("thinlens", "Camera with depth of field.", camera);
+    sensor("orthographic", "Parallel rays; the film is -1 .. 1 along x of the sensor's own space.", planes);
+    sensor("radiancemeter", "Radiance along the ray from the origin of to_world along +z.", {to_world});
+    sensor("irradiancemeter", "Irradiance on the outside of the shape it stands in, the mean over its area.", {});
+    sensor("fluxmeter", "Flux onto the outside of the shape it stands in.", {});
+    sensor("radiositymeter", "Radiosity (exitance) of the outside of the shape it stands in: emitted and reflected.",
+           {});
+    sensor("goniophotometer", "Far-field intensity of everything in the scene over all directions.", {to_world});
+    sensor("distant", "Radiance that leaves the scene against one direction, the mean over its cross section.",
+           {to_world,
+            {"direction", "vector", "", "0, 0, 1", "", "instead of to_world: in which the sensor looks"},
+            {"target", "point", "scene units", "", "", "look at this point alone"}});
 }
 
 void add_film(std::vector<PluginDescriptor>& all) {
@@ -166,7 +183,7 @@ std::vector<PluginDescriptor> build_registry() {
     for (PluginDescriptor& medium : medium_descriptors()) all.push_back(std::move(medium));
     add_shapes(all);
     add_emitters(all);
-    add_camera(all);
+    add_sensors(all);
     add_film(all);
     add_integrators(all);
     return all;

@@ -24,6 +24,7 @@ class Scene {
     std::vector<Medium> media;                          // shapes and the camera name them by index
     int camera_medium = vacuum;                         // around the camera
     std::shared_ptr<const Properties> sensor_node;      // built anew when the film's size is overridden
+    int sensor_shape = -1;                              // that the sensor stands in
     std::shared_ptr<const Properties> integrator_node;  // likewise for the integrator; null: path tracing
     FilmSettings film;
     int samples_per_pixel = 16;

@@ -3,6 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
+#include "patina/core/error.h"
 #include "patina/render/arriving_light.h"
 #include "patina/render/integrators/subpath.h"
 
@@ -21,6 +24,7 @@ struct JoinedPath {
     std::vector<Place> places;  // [0] is the lamp, the last the camera
     double direct_pdf = 0;      // of the lamp's point by light sampling from places[1]
     bool delta_light = false;
+    bool blind = false;  // the camera cannot be joined
 
     // Share of the strategy with `s` vertices from the lamp: power heuristic over all strategies that could have made
     // this path. Strategy t has the density prod_{i<t} from_light prod_{i>=t} from_camera, light sampling (t = 1) its
@@ -48,6 +52,7 @@ struct JoinedPath {
     bool possible(int t) const {
         if (t == 0) return !delta_light;
         if (places.size() == 2) return false;  // lamps are not joined with the camera
+        if (blind && t == static_cast<int>(places.size()) - 1) return false;
         return !places[t - 1].delta && !places[t].delta;
     }
 };
@@ -178,6 +183,7 @@ class Joiner {
             eye_.point.position = sight.from;
             eye_.point.geometric_normal = Vec3::Zero();
             eye_.forward = 1;
+            eye_importance_ = sight.importance;
             share = share_of(s, 1, light_[0], 0, 0, direct_pdf(), delta_lamp());
         }
         const int events = light_events(LightPathClassifier::eye, y, direction, s);
@@ -212,11 +218,7 @@ class Joiner {
 
   private:
     double direct_pdf() const { return direct_pdf_; }
-    bool delta_lamp() const {
-        const Emitter& e = c_.scene().lights.all()[light_[0].emitter];
-        return std::holds_alternative<PointEmitter>(e) || std::holds_alternative<SpotEmitter>(e) ||
-               std::holds_alternative<DirectionalEmitter>(e);
-    }
+    bool delta_lamp() const { return c_.scene().lights.is_delta(light_[0].emitter); }
 
     // Turns BSDF times the cosine towards the lamp into flux per solid angle that leaves (Veach 1997, eq. 5.19).
     static float leaving_factor(const PathVertex& y, const Vec3& direction) {
@@ -238,6 +240,7 @@ class Joiner {
         JoinedPath& path = path_;
         path.direct_pdf = direct;
         path.delta_light = delta_light;
+        path.blind = c_.problem.sensor.blind();
         path.places.clear();
         const auto vertex = [&](int i) -> const PathVertex& {
             if (i < s) return s == 1 ? lamp : light_[i];
@@ -276,8 +279,7 @@ class Joiner {
             const PathVertex &y = vertex(s - 1), &z = vertex(s);
             const Vec3 direction = (z.position() - y.position()).normalized();
             // The camera finds y from z, and then the vertex before y.
-            const double z_pdf =
-                t == 1 ? c_.problem.sensor.importance(-direction) : c_.pdf(z, z.to_previous, -direction);
+            const double z_pdf = t == 1 ? eye_importance_ : c_.pdf(z, z.to_previous, -direction);
             path.places[s - 1].from_camera = per_area(z_pdf, z.position(), y);
             path.places[s - 2].from_camera =
                 delta_light && s == 2 ? 0.0
@@ -298,11 +300,16 @@ class Joiner {
     JoinedPath path_;
     PathVertex lamp_, eye_;
     double direct_pdf_ = 0;
+    float eye_importance_ = 0;
 };
 
 }  // namespace
 
 void BidirectionalIntegrator::prepare(const TransportProblem& problem, const JobControl&) {
+    if (settings_.light_only && problem.sensor.blind())
+        throw input_error(problem.scene.sensor_node->where,
+                          fmt::format("no light path meets a {}", problem.scene.sensor_node->type),
+                          "it looks along single rays", "use path or bidirectional");
     emission_.emplace(problem.scene.lights, problem.scene.geometry);
 }
 
@@ -332,7 +339,7 @@ void BidirectionalIntegrator::trace(const TransportProblem& problem, const Senso
     }
     for (int s = 2; s <= lights && s <= depth; ++s) {
         sampler.seek(first_join_draw + (1u << 18) + 4 * static_cast<std::uint32_t>(s));
-        const Vec2 lens = problem.sensor.aperture_radius > 0 ? sampler.next2() : Vec2(0.5f, 0.5f);
+        const Vec2 lens = problem.sensor.uses_lens() ? sampler.next2() : Vec2(0.5f, 0.5f);
         joiner.join_camera(s, lens);
     }
 }

@@ -68,7 +68,7 @@ void trace_camera_path(const SubpathContext& context, const Sensor::CameraRay& c
     int events = LightPathClassifier::eye;
     bool hero_only = false;
     float eta = 1;
-    double pdf = context.problem.sensor.importance(ray.direction);
+    double pdf = 0;
     for (int depth = 0; static_cast<int>(path.size()) < most_vertices; ++depth) {
         sampler.seek(first_camera_draw + draws_per_vertex * static_cast<std::uint32_t>(depth));
 
@@ -76,6 +76,7 @@ void trace_camera_path(const SubpathContext& context, const Sensor::CameraRay& c
         PathVertex v;
         const bool found = meet(context.scene(), ray, v);
         if (!found) v = infinite_vertex(ray.direction);
+        if (depth == 0) pdf = context.problem.sensor.importance(camera, found ? v.hit.t : INFINITY);
         v.forward = per_area(pdf, path.back().position(), v);
         v.throughput = throughput;
         v.events = events;
