@@ -280,7 +280,7 @@ TEST_F(BadInput, Pictures) {
     picture.rgb.assign(12 * 12, 0.25f);
     picture.alpha.assign(12, 1.0f);
     io::write_stokes_exr(folder() / "good.exr", picture);
-    try_binary(read_text_file(folder() / "good.exr"), rounds(100), "exr",
+    try_binary(read_text_file(folder() / "good.exr"), rounds(300), "exr",
                [&](const std::string& bytes) { io::read_stokes_exr(write("picture.exr", bytes)); });
     Bitmap bitmap{"", 2, 2, {"R", "G", "B"}, std::vector<float>(12, 0.5f)};
     io::write_png(folder() / "good.png", bitmap);
