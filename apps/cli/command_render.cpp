@@ -11,7 +11,7 @@ namespace patina::cli {
 namespace {
 
 struct Options {
-    std::string scene, output, integrator, time, size, crop;
+    std::string scene, output, integrator, time, size, crop, sensor;
     std::vector<std::string> defines, light_paths;
     int samples = 0, neumann = 0;
     double noise = 0.0;
@@ -52,7 +52,7 @@ std::array<int, 4> parse_crop(const std::string& text) {
 }
 
 jobs::RenderRequest make_request(const Options& options, const CLI::App& command, const Session& session) {
-    jobs::RenderRequest request{options.scene, {}, {}, session.command_line};
+    jobs::RenderRequest request{options.scene, {}, {}, session.command_line, options.sensor};
     for (const std::string& define : options.defines) {
         const size_t equals = define.find('=');
         if (equals == std::string::npos) throw Error(ErrorKind::usage, fmt::format("-D {}: write name=value", define));
@@ -74,6 +74,51 @@ jobs::RenderRequest make_request(const Options& options, const CLI::App& command
     request.options.neumann_terms = options.neumann;
     if (command.count("--seed")) request.options.seed = options.seed;
     return request;
+}
+
+// What a meter read, in words.
+void print(const render::Measurement& m, Console& console) {
+    const render::QuantityNames& names = render::names_of(m.quantity);
+    const std::string error =
+        m.standard_error > 0 ? fmt::format(" (standard error {:.2g})", m.standard_error) : std::string();
+    console.result(fmt::format("{}: {:.6g} {} over 380 .. 780 nm", names.name, m.radiometric[0], names.unit));
+    console.result(
+        fmt::format("{}: {:.6g} {}{}", names.photometric_name, m.photometric[0], names.photometric_unit, error));
+    if (m.radiometric[0] > 0)
+        console.result(fmt::format("polarization (S1, S2, S3)/S0: {:.4f} {:.4f} {:.4f}",
+                                   m.radiometric[1] / m.radiometric[0], m.radiometric[2] / m.radiometric[0],
+                                   m.radiometric[3] / m.radiometric[0]));
+    if (m.total_flux)
+        console.result(fmt::format("flux into all directions: {:.6g} W, {:.6g} lm; largest {}: {:.6g} {}",
+                                   (*m.total_flux)[0], (*m.total_flux)[1], names.photometric_name, m.peak,
+                                   names.photometric_unit));
+    if (m.exposure_s > 0)
+        console.result(fmt::format("times the exposure of {:.6g} s: {:.6g} {} s, {:.6g} {} s", m.exposure_s,
+                                   m.exposure_s * m.radiometric[0], names.unit, m.exposure_s * m.photometric[0],
+                                   names.photometric_unit));
+}
+
+nlohmann::json to_json(const render::Measurement& m, const StokesImage& image) {
+    const render::QuantityNames& names = render::names_of(m.quantity);
+    nlohmann::json document = {{"quantity", names.name},
+                               {"unit", names.unit},
+                               {"value", m.radiometric[0]},
+                               {"stokes", m.radiometric},
+                               {"photometric_quantity", names.photometric_name},
+                               {"photometric_unit", names.photometric_unit},
+                               {"photometric_value", m.photometric[0]},
+                               {"photometric_stokes", m.photometric},
+                               {"photometric_standard_error", m.standard_error},
+                               {"spectral_unit", names.spectral_unit},
+                               {"bin_edges_nm", image.bin_edges_nm},
+                               {"spectral_stokes", m.spectral}};
+    if (m.total_flux) {
+        document["flux_w"] = (*m.total_flux)[0];
+        document["luminous_flux_lm"] = (*m.total_flux)[1];
+        document["largest_photometric_value"] = m.peak;
+    }
+    if (m.exposure_s > 0) document["exposure_s"] = m.exposure_s;
+    return document;
 }
 
 int run(const Options& options, const CLI::App& command, Session& session) {
@@ -99,11 +144,13 @@ int run(const Options& options, const CLI::App& command, Session& session) {
                                    pictures.parts[part].second.metadata.at("light_paths")));
     if (!meta("neumann_norm").empty())
         console.result(fmt::format("norm of the transport operator, as seen here: {}", meta("neumann_norm")));
+    if (pictures.measurement) print(*pictures.measurement, console);
     nlohmann::json document = {{"schema", "patina/render/1"},
                                {"written", written},
                                {"width", image.width},
                                {"height", image.height},
                                {"metadata", image.metadata}};
+    if (pictures.measurement) document["measurement"] = to_json(*pictures.measurement, image);
     console.document(document);
     if (meta("stopped") == "yes") {
         console.note("stopped early: the picture holds the passes that were done");
@@ -122,6 +169,7 @@ void add_render(CLI::App& program, Session& session) {
     command->add_option("scene", options->scene, "scene (Mitsuba 3 XML)")->required();
     command->add_option("-o,--output", options->output, "picture to write (.exr)")->required();
     command->add_option("--integrator", options->integrator, "in place of the scene's");
+    command->add_option("--sensor", options->sensor, "of a scene with several: its id, or its number from 0");
     command->add_option("--spp", options->samples, "samples per pixel")->check(CLI::Range(1, 1 << 24));
     command->add_option("--time", options->time, "stop after this time: 90s, 5m, 1h");
     command->add_option("--noise", options->noise, "stop at this relative noise, as in 0.01")

@@ -102,7 +102,8 @@ render::SceneResources scene_resources(std::vector<std::string>& warnings, const
 render::Pictures render_scene(const RenderRequest& request, const JobControl& control) {
     std::vector<std::string> warnings;
     const std::shared_ptr<const Properties> tree = io::read_mitsuba_scene(request.scene, request.variables);
-    const std::shared_ptr<const render::Scene> scene = render::build_scene(*tree, scene_resources(warnings, control));
+    const std::shared_ptr<const render::Scene> scene =
+        render::build_scene(*tree, scene_resources(warnings, control), request.sensor);
     render::Pictures pictures = render::render_parts(*scene, request.options, control);
     const auto add_provenance = [&](StokesImage& image) {
         image.metadata["command"] = request.command;

@@ -17,6 +17,7 @@ struct RenderRequest {
     render::RenderOptions options;
     std::map<std::string, std::string> variables;  // values for the scene's <default> names
     std::string command;                           // for provenance
+    std::string sensor;                            // of several, by id or number; "" is the first
 };
 
 // Files for the renderer; each is loaded, and each recipe solved, once. What was repaired in a mesh is said in

@@ -241,6 +241,11 @@ class Sweep {
     static std::string units_of(const std::string& key) {
         if (key.ends_with("_um")) return "um";
         if (key.ends_with("_nm")) return "nm";
+        if (key.ends_with("_per_um3")) return "1/um3";
+        if (key.ends_with("_um2")) return "um2";
+        if (key.ends_with("_um3")) return "um3";
+        if (key.ends_with("_g_cm3")) return "g/cm3";
+        if (key.ends_with("_percent")) return "%";
         return "1";
     }
 

@@ -80,7 +80,8 @@ p.lead { color: var(--dim); margin-top: 0; max-width: 50rem; }
 table { border-collapse: collapse; width: 100%; font-size: 13.5px; }
 th, td { text-align: left; padding: 0.55rem 0.8rem; border-bottom: 1px solid var(--line); vertical-align: top; }
 tr:last-child td { border-bottom: 0; } thead th { background: var(--soft); font-weight: 600; white-space: nowrap; }
-td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; } td.e { font-variant-numeric: tabular-nums; white-space: nowrap; }
+td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; } td.e, td.e + td { font-variant-numeric: tabular-nums; min-width: 13rem; }
+td:first-child:not(.n) { min-width: 18rem; }
 small { color: var(--dim); display: block; } .pass { color: var(--good); font-weight: 600; } .fail { color: var(--bad); font-weight: 700; } .skip { color: var(--dim); }
 .bar { display: inline-block; width: 5rem; height: 0.45rem; border-radius: 4px; background: var(--line); overflow: hidden; } .bar i { display: block; height: 100%; background: var(--good); }
 )";

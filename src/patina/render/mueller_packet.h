@@ -110,6 +110,9 @@ class Throughput {
     void scale(float factor) {
         for (int i = 0; i < (depolarized_ ? 1 : 4); ++i) columns_[i] *= factor;
     }
+    void scale(Float4 factor) {
+        for (int i = 0; i < (depolarized_ ? 1 : 4); ++i) columns_[i] *= spread(factor);
+    }
     // Keeps one wavelength of four, which then stands for all of them.
     void keep_only_hero() {
         const Float4 weight{4, 0, 0, 0};

@@ -9,6 +9,7 @@
 
 #include "patina/core/error.h"
 #include "patina/core/parallel.h"
+#include "patina/render/delta_light_at_sensor.h"
 #include "patina/render/picture_parts.h"
 #include "patina/render/plugins.h"
 #include "patina/render/scene.h"
@@ -54,7 +55,7 @@ std::unique_ptr<Integrator> integrator_of(const Scene& scene, const RenderOption
     if (!options.integrator && node) return build_integrator(*node);
     Properties chosen;
     chosen.category = "integrator";
-    chosen.type = options.integrator.value_or("path");
+    chosen.type = options.integrator.value_or(scene.media.empty() ? "path" : "volumetric");
     if (node) {
         // Keep what the scene says about its own integrator where the other knows it too.
         const PluginDescriptor& plugin = expect_plugin(chosen);
@@ -125,7 +126,8 @@ class Renderer {
     Renderer(const Scene& scene, const RenderOptions& options, const JobControl& control)
         : scene_(scene),
           settings_(film_of(scene, options)),
-          sensor_(build_sensor(*scene.sensor_node, settings_.width, settings_.height)),
+          sensor_(
+              build_sensor(*scene.sensor_node, settings_.width, settings_.height, scene.geometry, scene.sensor_shape)),
           integrator_(integrator_of(scene, options)),
           expressions_(expressions_of(options)),
           classes_(expressions_),
@@ -135,6 +137,9 @@ class Renderer {
             throw Error(ErrorKind::usage,
                         "this integrator does not follow single paths: no light-path expressions and "
                         "no Neumann series with it; use path or bidirectional");
+        if (!scene.media.empty() && !integrator_->follows_media())
+            throw Error(ErrorKind::usage,
+                        "the scene has media, which this integrator does not follow; use volumetric");
         if (options.noise_target && integrator_->splats())
             throw Error(ErrorKind::usage,
                         "the noise of an integrator that begins at the lamps is not estimated while "
@@ -175,7 +180,7 @@ class Renderer {
     std::size_t pixel_count() const { return film_.pixel_count(); }
 
     Pictures develop() const {
-        Pictures pictures{film_.develop(), {}};
+        Pictures pictures{film_.develop(), {}, {}};
         if (!knows_noise()) pictures.whole.variance.clear();
         if (expressions_.empty()) return pictures;
 
@@ -200,6 +205,23 @@ class Renderer {
         return pictures;
     }
 
+    // From mean radiance to what a meter measures; the picture then says what it holds.
+    void calibrate(Pictures& pictures) const {
+        if (!sensor_.is_meter()) return;
+        const auto scale = [&](StokesImage& image) {
+            const auto factor = static_cast<float>(sensor_.scale);
+            for (float& value : image.spectral) value *= factor;
+            for (float& value : image.rgb) value *= factor;
+            for (float& value : image.variance) value *= factor * factor;
+            image.metadata["quantity"] = names_of(sensor_.quantity).name;
+            image.metadata["unit"] = names_of(sensor_.quantity).spectral_unit;
+        };
+        scale(pictures.whole);
+        for (auto& [name, part] : pictures.parts) scale(part);
+        pictures.measurement = measure(pictures.whole, sensor_.quantity, sensor_.kind == Sensor::Kind::far_field);
+        pictures.measurement->exposure_s = sensor_.shutter_close - sensor_.shutter_open;
+    }
+
   private:
     TransportProblem problem() const { return {scene_, sensor_, classes_}; }
 
@@ -213,14 +235,18 @@ class Renderer {
         const Vec2 offset = settings_.filter.sample(sampler.next2());
         const Vec2 film((film_x + 0.5f + offset.x()) / settings_.width,
                         (film_y + 0.5f + offset.y()) / settings_.height);
-        const Vec2 lens = sensor_.aperture_radius > 0 ? sampler.next2() : Vec2::Zero();
+        const Vec2 lens = sensor_.uses_lens() ? sampler.next2() : Vec2::Zero();
         // The hero's quarter of the range and the place in it are drawn apart: all four wavelengths share the latter.
         const Vec2 hue = sampler.next2();
         const Wavelengths wavelengths = Wavelengths::sample(0.25f * (std::floor(4 * hue.y()) + hue.x()));
 
         record.begin();
         const std::size_t first_splat = record.splats.size();
-        integrator_->trace(problem(), sensor_.ray(film, lens), wavelengths, sampler, record);
+        const Sensor::CameraRay camera = sensor_.ray(film, lens);
+        integrator_->trace(problem(), camera, wavelengths, sampler, record);
+        if (sensor_.is_meter())
+            record.add(delta_light_at_sensor(scene_, sensor_, camera, wavelengths),
+                       classes_.path_class(LightPathClassifier::eye));
         StokesPacket total = record.total(), probe = total;
         for (std::size_t i = first_splat; i < record.splats.size(); ++i) probe += record.splats[i].stokes * 0.0f;
         if (!all_finite(probe)) {
@@ -335,6 +361,7 @@ Pictures render_parts(const Scene& scene, const RenderOptions& options, const Jo
         non_finite ? fmt::format("{} at {}", non_finite, renderer.non_finite().places()) : "0";
     if (stopped) metadata["stopped"] = "yes";
     for (auto& [name, part] : pictures.parts) part.metadata.insert(metadata.begin(), metadata.end());
+    renderer.calibrate(pictures);
     note_transport_norm(pictures, options.neumann_terms, metadata);
     return pictures;
 }

@@ -12,6 +12,7 @@
 #include "patina/core/progress.h"
 #include "patina/core/properties.h"
 #include "patina/core/stokes_image.h"
+#include "patina/render/measurement.h"
 #include "patina/render/scene_resources.h"
 
 namespace patina::render {
@@ -21,8 +22,10 @@ class Scene;  // render/scene.h: immutable, shared between threads
 // Builds everything a scene file describes. `root` is the node of category "scene" with children integrator, sensor,
 // shape, emitter, bsdf (those with an id, referenced elsewhere). File names are strings ("filename") already resolved.
 // Throws Error(input) at the place in the file for unknown plugins and properties, values out of range and degenerate
-// geometry, with the nearest legal name.
-std::shared_ptr<const Scene> build_scene(const Properties& root, const SceneResources& resources);
+// geometry, with the nearest legal name. `sensor` chooses one of several by its id or its place, counted from 0 in the
+// order of the file with those inside shapes last; "" is the first.
+std::shared_ptr<const Scene> build_scene(const Properties& root, const SceneResources& resources,
+                                         const std::string& sensor = "");
 
 // One picture beside the whole: the light of the paths that an expression accepts
 // (integrators/light_path_expression.h).
@@ -51,6 +54,7 @@ struct RenderOptions {
 struct Pictures {
     StokesImage whole;
     std::vector<std::pair<std::string, StokesImage>> parts;
+    std::optional<Measurement> measurement;  // of a sensor that is a meter
 };
 
 // Renders; the same scene, options and seed give the same bits for every number of threads (time and noise limits

@@ -36,6 +36,8 @@ class Integrator {
 
     // Samples write to pixels other than their own.
     virtual bool splats() const { return false; }
+    // Knows what is between surfaces; others refuse scenes with media.
+    virtual bool follows_media() const { return false; }
     // Every contribution is one path whose events are known.
     virtual bool knows_paths() const { return true; }
     // For the picture's metadata.

@@ -1,5 +1,6 @@
 #include "patina/render/integrators/path.h"
 
+#include "patina/render/arriving_light.h"
 #include "patina/render/mueller_packet.h"
 #include "patina/render/scene.h"
 
@@ -33,8 +34,10 @@ class PathState {
 
     // Light of the environments that the last direction ran into.
     void add_environment() {
-        scene_.lights.for_each_environment(ray_.direction, w_, [&](Float4 radiance, float light_pdf) {
-            add(throughput_.of_unpolarized(radiance * share_of_scattering(light_pdf)), events_);
+        scene_.lights.for_each_environment(ray_.direction, w_, [&](Float4 radiance, float light_pdf, int emitter) {
+            add(arriving(throughput_, scene_.lights, emitter, radiance * share_of_scattering(light_pdf),
+                         -ray_.direction),
+                events_);
         });
     }
 
@@ -46,13 +49,14 @@ class PathState {
         if (largest(radiance) <= 0) return;
         const float light_pdf =
             last_delta_ ? 0.0f : scene_.lights.surface_pdf(emitter, scene_.geometry, hit_, point_, last_position_);
-        add(throughput_.of_unpolarized(radiance * share_of_scattering(light_pdf)), events_);
+        add(arriving(throughput_, scene_.lights, emitter, radiance * share_of_scattering(light_pdf), -ray_.direction),
+            events_);
     }
 
     // Light of a lamp drawn at random, scattered here.
     void add_direct_light() {
         ShadingPoint shading = shading_point();
-        shading.unpolarized_light = true;
+        shading.unpolarized_light = !scene_.lights.any_polarized();
         if (!scene_.lights.any_sampled() || bsdf_is_delta(bsdf(), shading)) return;
         LightSample light;
         const float choice = sampler_.next();
@@ -64,7 +68,9 @@ class PathState {
         const float share = light.delta ? 1.0f : power_heuristic(light.pdf, value.pdf);
         axes_to_world(value.f);
         const int events = classes_.after(events_, continuous_event(bsdf(), shading, outgoing));
-        add(throughput_.of_unpolarized(light.radiance * (share / light.pdf), value.f, -ray_.direction), events);
+        add(arriving(throughput_, scene_.lights, light.emitter, light.radiance * (share / light.pdf), -light.direction,
+                     value.f, -ray_.direction),
+            events);
     }
 
     // Draws the next direction; false: the path ends.

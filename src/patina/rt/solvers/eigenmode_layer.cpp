@@ -19,11 +19,13 @@ using ComplexVector = Eigen::VectorXcd;
 // the extinction of view and beam rays relatively.
 struct Blocks {
     Eigen::MatrixXd h, g;
+    Eigen::VectorXd isotropic;  // of a conservative layer, else empty
     int r, v, b;
 
     Blocks(const TransferSystem<double>& system, double view_shift, double beam_shift)
         : h(system.signature.asDiagonal() * system.h),
           g(system.g * system.signature.asDiagonal()),
+          isotropic(system.isotropic),
           r(system.quadrature),
           v(system.views),
           b(system.size() - r - v) {
@@ -36,18 +38,21 @@ struct Blocks {
 
 // The eigenmodes of the quadrature rays, and R + T, R - T among them.
 struct Modes {
-    ComplexMatrix vectors, gradients;                   // V and H V / k
-    ComplexVector squares, rates, decay;                // k^2, k with Re k > 0, e^{-k tau}
+    ComplexMatrix vectors, gradients;                   // V and W = G^-1 V
+    ComplexVector squares;                              // k^2
+    ComplexVector p[2], q[2];                           // Weights for R + T and R - T
     ComplexMatrix r[2];                                 // R + T, R - T
-    Eigen::PartialPivLU<ComplexMatrix> denominator[2];  // of the transposed A +- B E
+    Eigen::PartialPivLU<ComplexMatrix> denominator[2];  // of the transposed sums of what enters
     Eigen::PartialPivLU<ComplexMatrix> basis;
 };
 
-ComplexMatrix numerator(const ComplexMatrix& v, const ComplexMatrix& w, const ComplexVector& decay, double sign) {
-    return 0.5 * (v - w) + (0.5 * sign) * (v + w) * decay.asDiagonal();
+ComplexMatrix numerator(const ComplexMatrix& v, const ComplexMatrix& w, const ComplexVector& p,
+                        const ComplexVector& q) {
+    return 0.5 * (v * p.asDiagonal() - w * q.asDiagonal());
 }
-ComplexMatrix denominator(const ComplexMatrix& v, const ComplexMatrix& w, const ComplexVector& decay, double sign) {
-    return 0.5 * (v + w) + (0.5 * sign) * (v - w) * decay.asDiagonal();
+ComplexMatrix denominator(const ComplexMatrix& v, const ComplexMatrix& w, const ComplexVector& p,
+                          const ComplexVector& q) {
+    return 0.5 * (v * p.asDiagonal() + w * q.asDiagonal());
 }
 
 // x d^-1, d given by the factors of its transpose.
@@ -57,6 +62,31 @@ ComplexMatrix right_solve(const Eigen::PartialPivLU<ComplexMatrix>& d_transposed
 
 constexpr double signs[2] = {1.0, -1.0};
 
+// (1 - e^{-k tau})/k, for k = 0 too.
+Complex decayed(Complex k, double tau) {
+    const Complex x = k * tau;
+    if (std::abs(x) > 1e-2) return (1.0 - std::exp(-x)) / k;
+    return tau * (1.0 - x / 2.0 * (1.0 - x / 3.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0 * (1.0 - x / 6.0)))));
+}
+
+// The weights of V and W where light enters both faces equally, p = 1 + E and q = k (1 - E), and with opposite signs, p
+// = (1 - E)/k and q = 1 + E. A deep layer has p = 1 and q = k for both.
+void weigh(double tau, Modes& modes) {
+    const auto n = modes.squares.size();
+    for (int s = 0; s < 2; ++s) modes.p[s] = modes.q[s] = ComplexVector::Ones(n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+        const Complex k = std::sqrt(modes.squares[j]);
+        if (std::isinf(tau)) {
+            modes.q[0][j] = modes.q[1][j] = k;
+            continue;
+        }
+        const Complex sum = decayed(k, tau);
+        modes.p[0][j] = modes.q[1][j] = 1.0 + std::exp(-tau * k);
+        modes.q[0][j] = modes.squares[j] * sum;
+        modes.p[1][j] = sum;
+    }
+}
+
 Modes quadrature_modes(const Blocks& s, double tau) {
     const Eigen::MatrixXd h = s.h.topLeftCorner(s.r, s.r), g = s.g.topLeftCorner(s.r, s.r);
     const Eigen::EigenSolver<Eigen::MatrixXd> solver(g * h);
@@ -65,14 +95,19 @@ Modes quadrature_modes(const Blocks& s, double tau) {
     Modes modes;
     modes.vectors = solver.eigenvectors();
     modes.squares = solver.eigenvalues();
-    modes.rates = modes.squares.array().sqrt();
-    modes.decay = (-tau * modes.rates.array()).exp();
-    modes.gradients = h.cast<Complex>() * modes.vectors * modes.rates.cwiseInverse().asDiagonal();
+    if (s.isotropic.size() > 0) {  // whose decay is 0 but for rounding
+        Eigen::Index slowest = 0;
+        modes.squares.cwiseAbs().minCoeff(&slowest);
+        modes.squares[slowest] = 0;
+        modes.vectors.col(slowest) = s.isotropic.head(s.r).cast<Complex>();
+    }
+    modes.gradients = g.cast<Complex>().partialPivLu().solve(modes.vectors);
     modes.basis.compute(modes.vectors);
+    weigh(tau, modes);
     for (int k = 0; k < 2; ++k) {
-        modes.denominator[k].compute(denominator(modes.vectors, modes.gradients, modes.decay, signs[k]).transpose());
+        modes.denominator[k].compute(denominator(modes.vectors, modes.gradients, modes.p[k], modes.q[k]).transpose());
         modes.r[k] =
-            right_solve(modes.denominator[k], numerator(modes.vectors, modes.gradients, modes.decay, signs[k]));
+            right_solve(modes.denominator[k], numerator(modes.vectors, modes.gradients, modes.p[k], modes.q[k]));
     }
     return modes;
 }
@@ -88,8 +123,8 @@ void extend(const Blocks& s, const Modes& modes, double tau, double weight, Eige
     // View components of the quadrature modes.
     ComplexMatrix xv = gh.block(r, 0, v, r).cast<Complex>() * modes.vectors;
     for (int j = 0; j < r; ++j) xv.col(j).array() /= modes.squares[j] - view_rate.square().cast<Complex>();
-    ComplexMatrix wv = h.block(r, 0, v, r) * modes.vectors + view_rate.matrix().cast<Complex>().asDiagonal() * xv;
-    wv = wv * modes.rates.cwiseInverse().asDiagonal();
+    const ComplexMatrix wv = s.g.diagonal().segment(r, v).cwiseInverse().cast<Complex>().asDiagonal() *
+                             (xv - s.g.block(r, 0, v, r).cast<Complex>() * modes.gradients);
 
     // The modes that decay as the beam.
     ComplexMatrix coefficients = modes.basis.solve(gh.block(0, r + v, r, b).cast<Complex>());
@@ -106,15 +141,17 @@ void extend(const Blocks& s, const Modes& modes, double tau, double weight, Eige
     // Solve R D = N block by block.
     const ComplexVector view_decay = (-tau * view_rate).exp().cast<Complex>(),
                         beam_decay = (-tau * beam_rate).exp().cast<Complex>();
+    const ComplexVector one = ComplexVector::Ones(b);
     for (int k = 0; k < 2; ++k) {
         const double sign = signs[k];
         const ComplexVector rv = sign * view_decay;
         const ComplexMatrix r_vr =
-            right_solve(modes.denominator[k], numerator(xv, wv, modes.decay, sign) -
-                                                  rv.asDiagonal() * denominator(xv, wv, modes.decay, sign));
-        const ComplexMatrix d_rb = denominator(xr, wr, beam_decay, sign), d_vb = denominator(xb, wb, beam_decay, sign);
-        const ComplexMatrix r_rb = numerator(xr, wr, beam_decay, sign) - modes.r[k] * d_rb;
-        const ComplexMatrix r_vb = numerator(xb, wb, beam_decay, sign) - rv.asDiagonal() * d_vb - r_vr * d_rb;
+            right_solve(modes.denominator[k], numerator(xv, wv, modes.p[k], modes.q[k]) -
+                                                  rv.asDiagonal() * denominator(xv, wv, modes.p[k], modes.q[k]));
+        const ComplexVector p = one + sign * beam_decay, q = one - sign * beam_decay;
+        const ComplexMatrix d_rb = denominator(xr, wr, p, q), d_vb = denominator(xb, wb, p, q);
+        const ComplexMatrix r_rb = numerator(xr, wr, p, q) - modes.r[k] * d_rb;
+        const ComplexMatrix r_vb = numerator(xb, wb, p, q) - rv.asDiagonal() * d_vb - r_vr * d_rb;
         sums[k].block(r, 0, v, r) += weight * r_vr.real();
         sums[k].block(0, r + v, r, b) += weight * r_rb.real();
         sums[k].block(r, r + v, v, b) += weight * r_vb.real();
