@@ -159,7 +159,15 @@ rt::Problem VariableStack::problem(int w, const Question& question) const {
     if (question.lambertian_base) result.base = rt::LambertianBase{*question.lambertian_base};
     if (question.lambertian_base == 0.0) result.base = rt::BlackBase{};
 
-    if (question.below == Below::nothing || std::isinf(layer.optical_thickness)) result.layers.resize(layer_.index + 1);
+    // What follows the recipe's layers is the medium of a table that is its base.
+    if (std::isinf(layer.optical_thickness)) {
+        result.layers.resize(layer_.index + 1);
+    } else {
+        if (question.lambertian_base) result.layers.resize(recipe_.layers.size());
+        if (question.below == Below::nothing)
+            result.layers.erase(result.layers.begin() + layer_.index + 1,
+                                result.layers.begin() + recipe_.layers.size());
+    }
     if (question.above == Above::nothing) {
         result.layers.erase(result.layers.begin(), result.layers.begin() + layer_.index);
         if (!recipe_.has_interface) result.refractive_index_above = result.layers.front().refractive_index;

@@ -236,6 +236,8 @@ class Solving {
         return error <= request_.tolerance * run.scale[w];
     }
     void fill(brdf::MuellerTable& table, Run& run) const;
+    // Refractive index of the medium that the table's directions are in: one number, or one a wavelength.
+    std::string medium_index(const std::vector<char>& done) const;
 
     const SolveRequest& request_;
     const JobControl& control_;
@@ -354,6 +356,14 @@ void Solving::fill(brdf::MuellerTable& table, Run& run) const {
     keep_only(table, run.done);
 }
 
+std::string Solving::medium_index(const std::vector<char>& done) const {
+    std::vector<double> values;
+    for (size_t w = 0; w < problems_.size(); ++w)
+        if (done[w]) values.push_back(problems_[w].problem.refractive_index_above);
+    if (std::count(values.begin(), values.end(), values.front()) == std::ssize(values)) values.resize(1);
+    return fmt::format("{}", fmt::join(values, " "));
+}
+
 SolveResult Solving::run(const coating::Recipe& recipe) {
     SolveResult result;
     result.resumed = checkpoint_->found_at_start();
@@ -396,6 +406,7 @@ SolveResult Solving::run(const coating::Recipe& recipe) {
     result.table.error_estimate = error;
     fill(result.table, run);
     result.table.provenance = provenance(recipe, request_, result.plan);
+    result.table.provenance.notes[coating::medium_index_note] = medium_index(run.done);
     result.table.validate();
     return result;
 }

@@ -97,6 +97,13 @@ class Constants {
         for (const double wavelength : wavelengths_nm_) text_ += fmt::format("{} ", base.reflectance(wavelength));
     }
     void add(const coating::MetalBase& base) { add(base.material); }
+    void add(const coating::TableBase& base) {
+        // Reflectances at a few angles tell tables apart that have the same name.
+        for (const double wavelength : wavelengths_nm_)
+            for (const double mu : {0.2, 0.5, 0.9})
+                text_ += fmt::format("{} {} ", base.table->body_albedo(wavelength, mu),
+                                     base.table->specular(wavelength, mu)(0, 0));
+    }
 
     const coating::Recipe& recipe_;
     const std::vector<double>& wavelengths_nm_;

@@ -10,6 +10,12 @@ void add_list(Fingerprint& fingerprint, const std::vector<double>& values) {
     for (const double value : values) fingerprint.add(value);
 }
 
+void add_roughness(Fingerprint& fingerprint, const std::optional<RoughSurface>& roughness) {
+    if (!roughness) return;
+    fingerprint.add(roughness->alpha);
+    fingerprint.add(static_cast<double>(roughness->distribution));
+}
+
 struct AddBase {
     Fingerprint& fingerprint;
 
@@ -18,9 +24,15 @@ struct AddBase {
     void operator()(const MetalBase& base) const {
         fingerprint.add(base.refractive_index.real());
         fingerprint.add(base.refractive_index.imag());
-        if (!base.roughness) return;
-        fingerprint.add(base.roughness->alpha);
-        fingerprint.add(static_cast<double>(base.roughness->distribution));
+        add_roughness(fingerprint, base.roughness);
+    }
+    // By what it does at a few cosines.
+    void operator()(const SurfaceBase& base) const {
+        const Eigen::VectorXd mu = Eigen::VectorXd::LinSpaced(5, 0.1, 0.97);
+        for (int m = 0; m <= base.surface->order(); ++m)
+            for (const double value : base.surface->mode(m, mu).reshaped()) fingerprint.add(value);
+        for (const double cosine : mu)
+            for (const double value : base.surface->specular(cosine).reshaped()) fingerprint.add(value);
     }
 };
 
@@ -28,6 +40,8 @@ struct AddBase {
 
 void add_to(Fingerprint& fingerprint, const Problem& problem) {
     fingerprint.add(problem.refractive_index_above);
+    fingerprint.add(problem.top_roughness ? "rough" : "smooth");
+    add_roughness(fingerprint, problem.top_roughness);
     fingerprint.add(static_cast<double>(problem.layers.size()));
     for (const Layer& layer : problem.layers) {
         fingerprint.add(layer.optical_thickness);
