@@ -272,6 +272,7 @@ MuellerGrid MuellerTable::evaluate_grid(double wavelength_nm, std::span<const do
                 for (int p = 0; p < grid.azimuths; ++p) *value++ += azimuth[p].cwiseProduct(amplitude);
             }
     }
+    const LinearInterval interval = linear_interval(wavelengths_nm, wavelength_nm);
     add_once_scattered(*this, interval.lower, 1 - interval.upper_weight, mu_o, mu_i, phi, grid);
     add_once_scattered(*this, interval.upper, interval.upper_weight, mu_o, mu_i, phi, grid);
     return grid;
