@@ -105,8 +105,7 @@ INSTANTIATE_TEST_SUITE_P(RandomRecipes, CertifiedError, testing::Range(1, 14));
 INSTANTIATE_TEST_SUITE_P(MoreRandomRecipes, CertifiedError, testing::Range(15, 25));
 
 // An extender of 2 um, size parameter 34: a glory of a few degrees, which no nodes follow, is kept in closed form, and
-// few streams do for the rest. The truth: twice the streams and 8 more, with a tenth of the light still in the
-// truncated peak that the table has.
+// few streams do for the rest. The truth: twice the streams and 8 more.
 TEST(CertifiedError, BoundsTheErrorOfCoarseParticles) {
     const coating::Recipe recipe = coating::parse_recipe(R"([interface]
 type = "smooth"
