@@ -172,7 +172,9 @@ void require_once_scattered(const SourceLocation& where, const MuellerTable& tab
                 for (const double value : *list)
                     require_finite(where, "once_scattered", std::isfinite(value), table.wavelengths_nm[w]);
             }
-            if (x.order() < 2) throw input_error(where, "once_scattered scattering has fewer than three orders");
+            if (x.order() < 2 || x.order() > 100'000)
+                throw input_error(where, fmt::format("once_scattered scattering is of order {}", x.order()),
+                                  "2 to 100000 make sense");
             for (const auto* list : {&layer.down, &layer.up})
                 for (const Mueller& mueller : *list)
                     require_finite(where, "once_scattered", mueller.allFinite(), table.wavelengths_nm[w]);
