@@ -67,7 +67,15 @@ std::optional<double> TableBase::medium_index(double wavelength_nm) const {
 }
 
 std::shared_ptr<const brdf::MuellerTable> read_base_table(const std::filesystem::path& path) {
-    if (path.extension() == ".h5") return std::make_shared<const brdf::MuellerTable>(io::read_table_hdf5(path));
+    if (path.extension() == ".h5") {
+        auto table = std::make_shared<const brdf::MuellerTable>(io::read_table_hdf5(path));
+        // Its modes lack the light that is kept in closed form, which no node follows.
+        if (!table->once_scattered.empty())
+            throw input_error({path.string()}, "not a table that a coating can lie on",
+                              "its particles are so large that light scattered once is kept beside the modes",
+                              "let the base be the recipe itself: type = \"recipe\"");
+        return table;
+    }
     if (path.extension() == ".pbsdf")
         return std::make_shared<const brdf::MuellerTable>(from_half_angles(io::read_table_pbsdf(path)));
     throw input_error({path.string()}, "not a table that a coating can lie on",

@@ -140,6 +140,9 @@ void keep_only(brdf::MuellerTable& table, const std::vector<char>& keep) {
     filter(table.specular_surface);
     filter(table.specular_coherent);
     if (!table.error_estimate.empty()) filter(table.error_estimate);
+    filter(table.once_scattered);
+    if (std::ranges::all_of(table.once_scattered, [](const auto& layers) { return layers.empty(); }))
+        table.once_scattered.clear();
 }
 
 brdf::Provenance provenance(const coating::Recipe& recipe, const SolveRequest& request, const SolvePlan& plan) {
@@ -194,8 +197,8 @@ class Solving {
           wavelengths_nm_(wavelength_choice_.wavelengths_nm),
           problems_(set_up(recipe, wavelengths_nm_, request, control)),
           checkpoint_(open_checkpoint(request, identity(recipe, request, wavelengths_nm_, problems_))),
-          references_(solver_, recipe, wavelengths_nm_, scattering_tolerance(request), fourier_tolerance(request),
-                      *checkpoint_),
+          references_(solver_, recipe, wavelengths_nm_, request.tolerance, scattering_tolerance(request),
+                      fourier_tolerance(request), *checkpoint_),
           pilots_(pilot_wavelengths(problems_)) {
         check_streams(request.streams);
         for (const OpticalProblem& optical : problems_) {
@@ -223,6 +226,9 @@ class Solving {
     void tell_wavelength_error(SolvePlan& plan) const;
     Run solve_all(int streams);
     SolvedWavelength solve_one(size_t w, int streams);
+    std::vector<brdf::OnceScattered> once_scattered(size_t w, int streams) const {
+        return once_scattered_of(solver_, problems_[w].problem, streams, request_.tolerance);
+    }
     // Upper bounds of the error at each wavelength, 1/sr.
     std::vector<double> estimate(const Run& run);
     double stream_error(const Run& run, size_t w);
@@ -266,7 +272,7 @@ Run Solving::solve_all(int streams) {
         if (control_.stop_requested()) return;
         SolvedWavelength solved = solve_one(w, streams);
         if (!is_statistical(solver_) && std::binary_search(pilots_.begin(), pilots_.end(), static_cast<size_t>(w)))
-            run.pilots[w] = between_nodes(solved.reflection);
+            run.pilots[w] = between_nodes({solved.reflection, once_scattered(w, streams)});
         run.reflections[w] = std::move(solved.reflection);
         run.scale[w] = solved.scale;
         run.difference_from_half[w] = solved.difference_from_half;
@@ -282,13 +288,16 @@ SolvedWavelength Solving::solve_one(size_t w, int streams) {
         if (auto solved = to_solved_wavelength(*kept)) return std::move(*solved);
     const rt::Problem& problem = problems_[w].problem;
     rt::SolveOptions options{.streams = streams, .fourier_tolerance = fourier_tolerance(request_)};
-    SolvedWavelength solved{solver_.reflection(problem, options)};
+    BodySolution body = solve_body(solver_, problem, options, request_.tolerance);
+    SolvedWavelength solved;
     if (!is_statistical(solver_)) {
-        const brdf::MuellerGrid grid = between_nodes(solved.reflection);
+        const brdf::MuellerGrid grid = between_nodes(body);
         options.streams = half_streams(streams);
         solved.scale = largest_intensity(grid);
-        solved.difference_from_half = largest_difference(grid, between_nodes(solver_.reflection(problem, options)));
+        solved.difference_from_half =
+            largest_difference(grid, between_nodes(solve_body(solver_, problem, options, request_.tolerance)));
     }
+    solved.reflection = std::move(body.reflection);
     checkpoint_->add(key, to_values(solved));
     return solved;
 }
@@ -334,12 +343,14 @@ void Solving::fill(brdf::MuellerTable& table, Run& run) const {
     table.body.resize(problems_.size());
     table.specular_surface.resize(problems_.size());
     table.specular_coherent.resize(problems_.size());
-    for (int i = 0; i <= 180; ++i) table.specular_theta_deg.push_back(0.5 * i);
+    table.specular_theta_deg = specular_angles_deg();
+    table.once_scattered.resize(problems_.size());
     const auto first = std::find(run.done.begin(), run.done.end(), 1) - run.done.begin();
     table.mu = run.reflections[first].mu;
     table.mu_weights = run.reflections[first].weights;
     for (size_t w = 0; w < problems_.size(); ++w) {
         table.body[w].modes = std::move(run.reflections[w].modes);
+        if (run.done[w]) table.once_scattered[w] = once_scattered(w, run.streams);
         fill_specular(table, problems_[w].problem, w);
     }
     keep_only(table, run.done);

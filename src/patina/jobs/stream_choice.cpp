@@ -12,11 +12,12 @@
 namespace patina::jobs {
 
 References::References(const rt::Solver& solver, const coating::Recipe& recipe,
-                       const std::vector<double>& wavelengths_nm, double scattering_tolerance, double fourier_tolerance,
-                       Checkpoint& checkpoint)
+                       const std::vector<double>& wavelengths_nm, double tolerance, double scattering_tolerance,
+                       double fourier_tolerance, Checkpoint& checkpoint)
     : solver_(solver),
       recipe_(recipe),
       wavelengths_nm_(wavelengths_nm),
+      tolerance_(tolerance),
       scattering_tolerance_(0.1 * scattering_tolerance),
       fourier_tolerance_(0.1 * fourier_tolerance),
       checkpoint_(checkpoint) {}
@@ -42,8 +43,8 @@ brdf::MuellerGrid References::solve(std::size_t w, int streams) const {
     if (const auto kept = checkpoint_.find(key, judged_values)) return to_grid(*kept);
     const coating::OpticalProblem optical =
         coating::optical_problem(recipe_, wavelengths_nm_[w], scattering_tolerance_);
-    const brdf::MuellerGrid grid = between_nodes(
-        solver_.reflection(optical.problem, {.streams = streams, .fourier_tolerance = fourier_tolerance_}));
+    const brdf::MuellerGrid grid = between_nodes(solve_body(
+        solver_, optical.problem, {.streams = streams, .fourier_tolerance = fourier_tolerance_}, tolerance_));
     checkpoint_.add(key, to_values(grid));
     return grid;
 }

@@ -18,15 +18,17 @@ static_assert(judged_values == std::size(zenith_angles_deg) * std::size(zenith_a
 
 }  // namespace
 
-brdf::MuellerGrid between_nodes(const rt::Reflection& reflection) {
+brdf::MuellerGrid between_nodes(const BodySolution& body) {
     std::vector<double> mu, phi;
     for (const double angle_deg : zenith_angles_deg) mu.push_back(std::cos(radians(angle_deg)));
     for (int k = 0; k < azimuths; ++k) phi.push_back(radians(20.0 * k));
     brdf::MuellerTable table;
     table.wavelengths_nm = {550.0};
-    table.mu = reflection.mu;
-    table.mu_weights = reflection.weights;
-    table.body = {{reflection.modes}};
+    table.mu = body.reflection.mu;
+    table.mu_weights = body.reflection.weights;
+    table.body = {{body.reflection.modes}};
+    table.specular_theta_deg = specular_angles_deg();
+    table.once_scattered = {body.once_scattered};
     return table.evaluate_grid(550.0, mu, mu, phi);
 }
 
