@@ -108,7 +108,7 @@ FilmSettings build_film(const Properties& node) {
 }
 
 Film::Film(const FilmSettings& settings, const ColourMatching& matching, bool with_variance)
-    : settings_(settings), matching_(matching), bins_(static_cast<int>(settings.bin_edges_nm.size()) - 1) {
+    : settings_(settings), bins_(static_cast<int>(settings.bin_edges_nm.size()) - 1) {
     PATINA_EXPECT(bins_ >= 1);
     stride_ = bins_ + 5;
     sums_.assign(pixel_count() * stride_, splat(0));
@@ -120,8 +120,8 @@ Film::Film(const FilmSettings& settings, const ColourMatching& matching, bool wi
     for (int node = 0; node < spectrum_nodes; ++node) {
         const double nm = wavelength_min_nm + node;
         const auto upper = std::upper_bound(edges.begin(), edges.end(), nm);
-        bin_of_.push_back(static_cast<int>(upper - edges.begin()) - 1);
-        upper_edge_.push_back(upper == edges.end() || *upper > nm + 1 ? INFINITY : static_cast<float>(*upper));
+        nanometres_.push_back({0.25f * matching.xyz(node), static_cast<int>(upper - edges.begin()) - 1,
+                               upper == edges.end() || *upper > nm + 1 ? INFINITY : static_cast<float>(*upper)});
     }
 }
 

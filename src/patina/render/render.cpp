@@ -20,6 +20,7 @@ namespace patina::render {
 namespace {
 
 constexpr int tile_size = 16;
+constexpr int block_size = 64;    // samples that an integrator may trace side by side
 constexpr int largest_pass = 16;  // samples per pixel between two looks at the clock and the stop sign
 
 constexpr int unlimited_samples = 1 << 30;
@@ -97,11 +98,8 @@ class NonFiniteSamples {
 };
 
 bool all_finite(const StokesPacket& s) {
-    // Zero times a finite number is zero, times any other it is NaN.
-    const StokesPacket probe = s * 0.0f;
-    float total = 0;
-    for (int i = 0; i < 16; ++i) total += probe[i];
-    return total == 0;
+    constexpr std::int32_t exponent = 0x7f800000;  // all ones in infinities and NaN
+    return set_lanes(((WideInt)s & exponent) == exponent) == 0;
 }
 
 // Do the sixteen numbers vanish?
@@ -239,63 +237,110 @@ class Renderer {
             const std::ptrdiff_t end = std::min(begin + batch, tiles);
             std::vector<std::vector<Splat>> splats(integrator_->splats() ? end - begin : 0);
             parallel_for(begin, end, [&](std::ptrdiff_t tile) {
-                PathRecord record(classes_.class_count());
+                SampleBlock block(classes_.class_count());
+                std::vector<Splat>* kept = integrator_->splats() ? &splats[tile - begin] : nullptr;
                 const int x0 = static_cast<int>(tile % across) * tile_size,
                           y0 = static_cast<int>(tile / across) * tile_size;
                 for (int y = y0; y < std::min(y0 + tile_size, settings_.crop_height); ++y)
                     for (int x = x0; x < std::min(x0 + tile_size, settings_.crop_width); ++x)
-                        add_samples_of_pixel(x, y, first, last, record);
-                if (integrator_->splats()) splats[tile - begin] = std::move(record.splats);
+                        for (int sample = first; sample < last; ++sample) {
+                            block.places[block.count++] = {x, y, sample};
+                            if (block.count == block_size) trace(block, kept);
+                        }
+                trace(block, kept);
             });
             for (const auto& of_tile : splats)
                 for (const Splat& splat : of_tile) add_splat(splat);
         }
     }
 
-    void add_samples_of_pixel(int x, int y, int first, int last, PathRecord& record) {
-        const std::size_t place = static_cast<std::size_t>(y) * settings_.crop_width + x;
-        for (int sample = first; sample < last; ++sample) {
-            add_sample(x, y, sample, record);
-            if (!integrator_->splats() && Film::batch_ends(sample + 1)) film_.end_batch(place, sample + 1);
-        }
+    // Samples that are traced side by side: the pixel of the window and the number of each.
+    struct SampleBlock {
+        struct Place {
+            int x, y, sample;
+        };
+        explicit SampleBlock(int classes) : records(block_size, PathRecord(classes)), samples(block_size) {}
+        int count = 0;
+        std::array<Place, block_size> places;
+        std::vector<PathRecord> records;
+        std::vector<CameraSample> samples;
+    };
+
+    std::size_t window_pixel(const SampleBlock::Place& place) const {
+        return static_cast<std::size_t>(place.y) * settings_.crop_width + place.x;
     }
 
-    void add_sample(int x, int y, int sample, PathRecord& record) {
-        const int film_x = settings_.crop_x + x, film_y = settings_.crop_y + y;
-        const auto pixel = static_cast<std::uint32_t>(film_y) * static_cast<std::uint32_t>(settings_.width) +
-                           static_cast<std::uint32_t>(film_x);
-        Sampler sampler(pixel, static_cast<std::uint32_t>(sample), seed_);
-
-        // Place on the film, place on the lens, wavelengths.
-        const Vec2 offset = settings_.filter.sample(sampler.next2());
-        const Vec2 film((film_x + 0.5f + offset.x()) / settings_.width,
-                        (film_y + 0.5f + offset.y()) / settings_.height);
-        const Vec2 lens = sensor_.uses_lens() ? sampler.next2() : Vec2::Zero();
-        // The hero's quarter of the range and the place in it are drawn apart: all four wavelengths share the latter.
-        const Vec2 hue = sampler.next2();
-        const Wavelengths wavelengths = Wavelengths::sample(0.25f * (std::floor(4 * hue.y()) + hue.x()));
-
-        record.begin();
-        const std::size_t first_splat = record.splats.size();
-        const Sensor::CameraRay camera = sensor_.ray(film, lens);
-        integrator_->trace(problem(), camera, wavelengths, sampler, record);
-        if (sensor_.is_meter())
-            record.add(delta_light_at_sensor(scene_, sensor_, camera, wavelengths),
-                       classes_.path_class(LightPathClassifier::eye));
-        StokesPacket total = record.total(), probe = total;
-        for (std::size_t i = first_splat; i < record.splats.size(); ++i) probe += record.splats[i].stokes * 0.0f;
-        if (!all_finite(probe)) {
-            non_finite_.note(film_x, film_y, sample);
-            record.splats.resize(first_splat);
-            return;
+    // Traces and empties a block.
+    void trace(SampleBlock& block, std::vector<Splat>* splats) {
+        for (int first = 0; first < block.count; first += wide_lanes)
+            begin_samples(block, first, std::min(first + wide_lanes, block.count));
+        integrator_->trace_block(problem(), std::span(block.samples).first(block.count));
+        for (int i = 0; i < block.count; ++i) {
+            const CameraSample& sample = block.samples[i];
+            PathRecord& record = *sample.record;
+            if (sensor_.is_meter())
+                record.add(delta_light_at_sensor(scene_, sensor_, sample.camera, sample.wavelengths),
+                           classes_.path_class(LightPathClassifier::eye));
+            const bool added = add_sample(block.places[i], record, sample.wavelengths);
+            const int done = block.places[i].sample + 1;
+            if (!splats && Film::batch_ends(done)) film_.end_batch(window_pixel(block.places[i]), done);
+            if (splats && added) splats->insert(splats->end(), record.splats.begin(), record.splats.end());
         }
-        const std::size_t place = static_cast<std::size_t>(y) * settings_.crop_width + x;
-        film_.add(place, total, wavelengths, record.hit);
+        block.count = 0;
+    }
+
+    // Draws place on the film, place on the lens and wavelengths for up to sixteen samples.
+    void begin_samples(SampleBlock& block, int first, int last) const {
+        enum CameraDraw : std::uint32_t { on_film, on_lens, hue, camera_draws };
+        SamplerBlock draws;
+        for (int i = first; i < last; ++i) {
+            const auto& [x, y, sample] = block.places[i];
+            if (i == 0 || x != block.places[i - 1].x) film_.prefetch(window_pixel(block.places[i]));
+            const auto pixel =
+                static_cast<std::uint32_t>(settings_.crop_y + y) * static_cast<std::uint32_t>(settings_.width) +
+                static_cast<std::uint32_t>(settings_.crop_x + x);
+            block.samples[i].sampler = Sampler(pixel, static_cast<std::uint32_t>(sample), seed_);
+            draws.set(i - first, block.samples[i].sampler);
+        }
+        FloatLanes film_x, film_y, lens_x, lens_y, hue_x, hue_y;
+        draws.next2(on_film, film_x, film_y);
+        if (sensor_.uses_lens()) draws.next2(on_lens, lens_x, lens_y);
+        draws.next2(hue, hue_x, hue_y);
+        for (int i = first; i < last; ++i) {
+            const int k = i - first;
+            CameraSample& s = block.samples[i];
+            const Vec2 offset = settings_.filter.sample({film_x[k], film_y[k]});
+            film_x[k] = (settings_.crop_x + block.places[i].x + 0.5f + offset.x()) / settings_.width;
+            film_y[k] = (settings_.crop_y + block.places[i].y + 0.5f + offset.y()) / settings_.height;
+            // The hero's quarter of the range and the place in it are drawn apart: all four wavelengths share the
+            // latter.
+            s.wavelengths = Wavelengths::sample(0.25f * (std::floor(4 * hue_y[k]) + hue_x[k]));
+            s.sampler.seek(camera_draws);
+            s.record = &block.records[i];
+            s.record->begin();
+        }
+        Sensor::CameraRay rays[wide_lanes];
+        sensor_.rays(film_x, film_y, lens_x, lens_y, last - first, rays);
+        for (int i = first; i < last; ++i) block.samples[i].camera = rays[i - first];
+    }
+
+    // False: the sample is left out, for it is not finite.
+    bool add_sample(const SampleBlock::Place& place, const PathRecord& record, const Wavelengths& wavelengths) {
+        const StokesPacket total = record.total();
+        StokesPacket probe = total;
+        for (const Splat& splat : record.splats) probe += splat.stokes * 0.0f;
+        if (!all_finite(probe)) {
+            non_finite_.note(settings_.crop_x + place.x, settings_.crop_y + place.y, place.sample);
+            return false;
+        }
+        const std::size_t pixel = window_pixel(place);
+        film_.add(pixel, total, wavelengths, record.hit);
         for (std::size_t c = 0; c < class_films_.size(); ++c) {
             const StokesPacket& stokes = record.of_class(static_cast<int>(c));
-            if (!all_zero(stokes)) class_films_[c].add_light(place, stokes, wavelengths);
-            class_films_[c].add_count(place, record.hit);
+            if (!all_zero(stokes)) class_films_[c].add_light(pixel, stokes, wavelengths);
+            class_films_[c].add_count(pixel, record.hit);
         }
+        return true;
     }
 
     // Gives each pixel of the window its share by the reconstruction filter. There is one path from the lamps for every

@@ -43,7 +43,7 @@ inline ScatteringEvent continuous_event(const Bsdf& bsdf, const ShadingPoint& po
             } else if constexpr (std::is_same_v<Model, TwoSided>) {
                 return continuous_event(nested_bsdf(point, outgoing.z() > 0 ? model.front : model.back), point,
                                         outgoing);
-            } else if constexpr (std::is_same_v<Model, Mask> || std::is_base_of_v<NormalMap, Model>) {
+            } else if constexpr (std::is_base_of_v<NormalMap, Model> || std::is_same_v<Model, Mask>) {
                 return continuous_event(nested_bsdf(point, model.model), point, outgoing);
             } else if constexpr (std::is_same_v<Model, Blend>) {
                 return event_of_mixture(model, point, outgoing);
