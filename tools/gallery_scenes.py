@@ -86,9 +86,9 @@ def room(*contents):
              wall('<translate y="1" z="-1"/>', white),
              wall('<rotate y="1" angle="90"/><translate x="-1" y="1"/>', "0.6, 0.06, 0.05"),
              wall('<rotate y="1" angle="-90"/><translate x="1" y="1"/>', "0.1, 0.45, 0.08")]
-    lamp = ('<shape type="rectangle"><transform name="to_world"><scale value="0.3"/><rotate x="1" angle="90"/>'
+    lamp = ('<shape type="rectangle"><transform name="to_world"><scale value="0.5"/><rotate x="1" angle="90"/>'
             '<translate y="1.98"/></transform><bsdf type="diffuse"><float name="reflectance" value="0"/></bsdf>'
-            '<emitter type="area"><rgb name="radiance" value="14, 14, 14"/></emitter></shape>')
+            '<emitter type="area"><rgb name="radiance" value="6, 6, 6"/></emitter></shape>')
     return ('<scene version="3.0.0"><integrator type="path"><integer name="max_depth" value="9"/></integrator>'
             '<sensor type="perspective"><float name="fov" value="34"/><transform name="to_world">'
             '<lookat origin="0, 1, 4.4" target="0, 1, 0" up="0, 1, 0"/></transform><film type="hdrfilm">'

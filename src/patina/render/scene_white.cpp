@@ -1,6 +1,7 @@
 #include "patina/render/scene_white.h"
 
 #include "patina/render/spectrum.h"
+#include "patina/render/vec.h"
 
 namespace patina::render {
 
