@@ -62,7 +62,9 @@ TEST_F(MitsubaStokes, ComponentsHaveMitsubasSigns) {
         // Rays through the filter at up to 15 degrees turn its axis against the camera's by less than 0.02; their mean
         // over both sides of the picture by less. Light that the still life returns is polarized by the filter too.
         for (int k = 0; k < 3; ++k) EXPECT_NEAR(s[k + 1] / s[0], c.stokes[k], 0.03) << c.filter << " " << c.theta_deg;
-        if (std::string(c.filter) != "retarder") EXPECT_NEAR(s[0] / whole, 0.5, 0.02) << c.filter;
+        if (std::string(c.filter) != "retarder") {
+            EXPECT_NEAR(s[0] / whole, 0.5, 0.02) << c.filter;
+        }
     }
 }
 
