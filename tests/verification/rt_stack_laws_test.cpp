@@ -63,50 +63,51 @@ TEST(SemiInfinite, IsotropicScatteringFollowsTheHFunctions) {
                 solver_named(solver).field(problem, {0.4, {1, 0, 0, 0}, {0.0}, views, {0.0}}, {.streams = 24});
             for (std::size_t o = 0; o < views.size(); ++o)
                 EXPECT_NEAR(field.upward[0][o][0][0], 0.25 * albedo * 0.4 / (views[o] + 0.4) * h(views[o]) * h(0.4),
-                            1e-6)
+                            2e-6)
                     << solver << " " << albedo << " " << views[o];
             const Reflection r = solver_named(solver).reflection(problem, {.streams = 24, .most_fourier_orders = 1});
             for (std::size_t i = 0; i < r.mu.size(); ++i) {
                 double reflected = 0.0;
                 for (std::size_t o = 0; o < r.mu.size(); ++o)
                     reflected += 2.0 * pi * r.weights[o] * r.mu[o] * r.modes[0](4 * o, 4 * i);
-                // Exactly 1 when nothing absorbs.
-                EXPECT_NEAR(reflected, 1.0 - std::sqrt(1.0 - albedo) * h(r.mu[i]), albedo == 1.0 ? 1e-11 : 1e-6);
+                // Exactly 1 when nothing absorbs; else to the quadrature of the most grazing rays.
+                EXPECT_NEAR(reflected, 1.0 - std::sqrt(1.0 - albedo) * h(r.mu[i]), albedo == 1.0 ? 1e-11 : 3e-5);
             }
         }
 }
 
-// The transmission matrix of a stack between two directions, 1/sr: downward diffuse light at its bottom.
-Mueller transmission(const Problem& problem, double mu_i, double mu_o, double phi) {
+// The transmission matrices of a stack between two directions at some azimuths, 1/sr: downward diffuse light at its
+// bottom.
+std::vector<Mueller> transmission(const Problem& problem, double mu_i, double mu_o, const std::vector<double>& phi) {
     double total = 0.0;
     for (const Layer& layer : problem.layers) total += layer.optical_thickness;
-    Mueller result;
-    for (int column = 0; column < 4; ++column)
-        result.col(column) = solver_named("doubling")
-                                 .field(problem, {mu_i, optics::Stokes::Unit(column), {total}, {mu_o}, {phi}},
-                                        {.streams = 10, .fourier_tolerance = 0.0})
-                                 .downward[0][0][0] /
-                             (pi * mu_i);
+    std::vector<Mueller> result(phi.size());
+    for (int column = 0; column < 4; ++column) {
+        const Field field = solver_named("doubling")
+                                .field(problem, {mu_i, optics::Stokes::Unit(column), {total}, {mu_o}, phi},
+                                       {.streams = 6, .fourier_tolerance = 0.0});
+        for (std::size_t p = 0; p < phi.size(); ++p) result[p].col(column) = field.downward[0][0][p] / (pi * mu_i);
+    }
     return result;
 }
 
 // Light that takes its way back: t(i, o) / n_o^2 of a stack is Q t(o, i)^T Q / n_i^2 of the stack turned upside down
-// (turning about a horizontal axis keeps Stokes vectors and relative azimuths). A clear layer without thickness gives
-// the turned stack its air.
+// (turning about a horizontal axis keeps Stokes vectors and relative azimuths). A clear layer gives the turned stack
+// its air; what it absorbs is put back.
 TEST(Stack, TurnedUpsideDownTransmitsTheSame) {
-    const Layer upper{0.6, 0.95, physical_expansion(2), 1.5}, middle{0.3, 0.8, physical_expansion(3), 1.2},
-        lower{0.4, 1.0, physical_expansion(4), 1.33};
-    const Layer air{0.0, 0.0, physical_expansion(2), 1.0};
-    const Problem stack{1.0, {upper, middle, lower}, BlackBase{}},
-        turned{1.33, {lower, middle, upper, air}, BlackBase{}};
-    for (double phi : {0.0, 0.8, 2.5}) {
-        const Mueller there = transmission(stack, 0.7, 0.45, phi) / (1.33 * 1.33),
-                      back = transmission(turned, 0.45, 0.7, phi);
-        EXPECT_LT((there - optics::reversal() * back.transpose() * optics::reversal()).cwiseAbs().maxCoeff(),
-                  1e-12 * there.cwiseAbs().maxCoeff())
-            << phi;
-        EXPECT_GT(there(3, 2) * there(3, 2) + there(2, 0) * there(2, 0), phi == 0.0 ? -1.0 : 1e-12);
+    const Layer upper{0.6, 0.95, physical_expansion(2, 4), 1.5}, lower{0.4, 1.0, physical_expansion(4, 4), 1.33};
+    const Layer air{0.01, 0.0, physical_expansion(2, 4), 1.0};
+    const Problem stack{1.0, {upper, lower}, BlackBase{}}, turned{1.33, {lower, upper, air}, BlackBase{}};
+    const std::vector<double> phi{0.0, 0.8, 2.5};
+    const auto there = transmission(stack, 0.7, 0.45, phi), back = transmission(turned, 0.45, 0.7, phi);
+    for (std::size_t p = 0; p < phi.size(); ++p) {
+        const Mueller expected = there[p] / (1.33 * 1.33), found = std::exp(0.01 / 0.7) * back[p];
+        EXPECT_LT((expected - optics::reversal() * found.transpose() * optics::reversal()).cwiseAbs().maxCoeff(),
+                  1e-11 * expected.cwiseAbs().maxCoeff())
+            << phi[p];
     }
+    // The azimuth's sense shows.
+    EXPECT_GT(std::abs(there[1](2, 0)), 1e-3 * there[1](0, 0));
 }
 
 // One layer, two halves, ten slices: what leaves and what is inside.

@@ -106,6 +106,8 @@ VariableStack::VariableStack(const Recipe& recipe, const StackOptions& options, 
         optical_per_length_.push_back(optical.problem.layers[layer_.index].optical_thickness);
         problems_.push_back(std::move(optical.problem));
     }
+    if (problems_.front().has_rough_top())
+        notes.insert("rough top: d:8 excluded is without the reflection of a smooth surface; 45:0 has a part of it");
     notes_.assign(notes.begin(), notes.end());
     streams_ = chosen_streams(problems_, options);
 }
@@ -161,7 +163,11 @@ ReflectanceSpectra VariableStack::solve(const Question& question, const JobContr
         if (!reflection.diagnostics.converged) converged_ = false;
         const Geometry geometry = measure(reflection);
         result.r45_0[w] = geometry.r45_0;
-        result.d8_excluded[w] = geometry.d8;
+        // A rough surface scatters its reflection: what it sends in all directions is taken for that of a smooth one.
+        rt::Problem smooth = at_w;
+        smooth.top_roughness.reset();
+        const double scattered = at_w.has_rough_top() ? rt::specular_surface(smooth, mu_8)(0, 0) : 0.0;
+        result.d8_excluded[w] = geometry.d8 - scattered;
         result.d8_included[w] =
             geometry.d8 + rt::specular_surface(at_w, mu_8)(0, 0) + rt::specular_coherent(at_w, mu_8)(0, 0);
         result.bihemispherical[w] = geometry.bihemispherical;
