@@ -1,4 +1,4 @@
-#include "command.h"
+#include "paint_options.h"
 #include <fmt/format.h>
 
 #include "patina/coating/paint_metrics_colour.h"
@@ -14,13 +14,8 @@ using coating::PaintMetrics;
 using coating::ReflectanceSpectra;
 using nlohmann::json;
 
-struct Options {
-    std::string recipe, wavelengths, target;
-    std::vector<std::string> settings;
-    double tolerance = 1e-3;
-    int streams = 0;
-    std::string solver = "doubling";
-    double white = 0.80, contrast = 0.98;
+struct Options : PaintCommandOptions {
+    std::string target, against;
     bool quick = false;
 };
 
@@ -153,6 +148,17 @@ json to_json(const Options& options, const coating::Recipe& recipe, const jobs::
                      {"streams", m.streams},
                      {"converged", m.converged},
                      {"notes", m.notes}};
+    if (report.tinting_strength) {
+        const coating::TintingStrength& strength = *report.tinting_strength;
+        document["tinting_strength"] = {{"against", options.against},
+                                        {"geometry", "films without end, d:8 excluded, Saunderson"},
+                                        {"wavelength_nm", strength.wavelength_nm},
+                                        {"at_maximum", strength.at_maximum},
+                                        {"integrated", strength.integrated},
+                                        {"delta_e_2000", strength.delta_e_2000},
+                                        {"k_over_s", strength.k_over_s},
+                                        {"k_over_s_standard", strength.k_over_s_standard}};
+    }
     if (report.target_lab)
         document["target"] = {{"lab", lab_json(*report.target_lab)},
                               {"delta_e_2000", *report.delta_e_2000},
@@ -230,6 +236,23 @@ void print_colour(const Console& console, const jobs::PaintReport& report) {
                                    (*report.target_lab)[2]));
 }
 
+void print_tinting_strength(const Console& console, const coating::TintingStrength& strength,
+                            const std::string& against) {
+    console.result("");
+    console.result(fmt::format(
+        "tinting strength    {:.1f} % of {} at {:g} nm, where it absorbs most; {:.1f} % over the wavelengths",
+        100.0 * strength.at_maximum, against, strength.wavelength_nm, 100.0 * strength.integrated));
+    console.result(
+        fmt::format("                    K/S of films without end, d:8 excluded, Saunderson (ISO 787-24); CIEDE2000 "
+                    "between them {:.2f} "
+                    "(D65, 10 deg)",
+                    strength.delta_e_2000));
+    if (strength.at_maximum > 0.0)
+        console.result(
+            fmt::format("                    of whites in the same black: relative scattering power {:.1f} %",
+                        100.0 / strength.at_maximum));
+}
+
 void print_film(const Console& console, const PaintMetrics& m) {
     const char* unit = m.thickness_is_optical ? "per optical thickness" : "per um";
     console.result("");
@@ -259,15 +282,10 @@ Eigen::Vector3d read_target(const std::string& target) {
 int run(const Options& options, Session& session) {
     const coating::Recipe recipe = coating::read_recipe(options.recipe, options.settings);
     jobs::PaintRequest request;
-    if (!options.wavelengths.empty())
-        request.options.stack.wavelengths_nm = parse_number_list(options.wavelengths, "--wavelengths");
-    request.options.stack.tolerance = options.tolerance;
-    request.options.stack.streams = options.streams;
-    request.options.stack.solver = options.solver;
-    request.options.white_reflectance = options.white;
-    request.options.wanted_contrast_ratio = options.contrast;
+    request.options = to_paint_options(options);
     request.angular = !options.quick;
     request.command = session.command_line;
+    if (!options.against.empty()) request.against = coating::read_recipe(options.against);
     if (!options.target.empty()) request.target_lab = read_target(options.target);
 
     const jobs::PaintReport report = jobs::paint(recipe, request, session.control());
@@ -278,6 +296,7 @@ int run(const Options& options, Session& session) {
     print_reflectance(console, report.metrics);
     print_colour(console, report);
     print_film(console, report.metrics);
+    if (report.tinting_strength) print_tinting_strength(console, *report.tinting_strength, options.against);
     console.document(to_json(options, recipe, report));
     console.hint(fmt::format("patina sweep {} --vary layers.{}.{}=5:80:12log -o sweep", options.recipe,
                              report.metrics.layer,
@@ -291,22 +310,11 @@ void add_paint(CLI::App& program, Session& session) {
     auto options = std::make_shared<Options>();
     CLI::App* command = program.add_subcommand(
         "paint", "paint metrics: contrast ratio, hiding power, colour, whiteness, Kubelka-Munk K and S, gloss");
-    command->add_option("recipe", options->recipe, "paint recipe (TOML)")->required();
+    add_paint_options(*command, *options);
     command->add_option("--target", options->target,
                         "colour to compare with: L,a,b (45:0, D65, 10 deg) or a BRDF table (.h5)");
-    command->add_option("--wavelengths", options->wavelengths, "vacuum wavelengths in nm (default: 400:700:10)");
-    command->add_option("--tolerance", options->tolerance, "relative accuracy wanted")
-        ->check(CLI::Range(1e-8, 0.1))
-        ->capture_default_str();
-    command->add_option("--streams", options->streams,
-                        "quadrature nodes per hemisphere in air (default: from the tolerance)");
-    command->add_option("--solver", options->solver, "doubling | eigenmodes")->capture_default_str();
-    command->add_option("--white", options->white, "reflectance of the white card")->capture_default_str();
-    command->add_option("--contrast-ratio", options->contrast, "contrast ratio that counts as hiding")
-        ->capture_default_str();
-    command->add_option("--set", options->settings, "change a key of the recipe: layers.0.thickness_um=30 (repeatable)")
-        ->take_all()
-        ->allow_extra_args(false);
+    command->add_option("--against", options->against,
+                        "recipe of a standard: tinting strength, the ratio of K/S (ISO 787-24)");
     command->add_flag("--quick", options->quick, "leave out the colours at several angles and the gloss");
     command->footer("example: patina paint examples/white_wall_paint.toml --set volume_solids=0.4");
     command->callback([options, &session] { session.chosen = [options, &session] { return run(*options, session); }; });

@@ -11,12 +11,12 @@ namespace patina::cli {
 namespace {
 
 struct Options {
-    std::string scene, output, integrator, time, size, crop;
+    std::string scene, output, integrator, time, size, crop, sensor;
     std::vector<std::string> defines, light_paths;
     int samples = 0, neumann = 0;
-    double noise = 0.0;
+    double noise = 0.0, checkpoint_every = 60.0;
     std::uint64_t seed = 0;
-    bool stokes_rgb = false, png = true;
+    bool stokes_rgb = false, png = true, resume = false, keep_checkpoint = false;
 };
 
 // "90", "90s", "5m", "1h" in seconds.
@@ -52,7 +52,14 @@ std::array<int, 4> parse_crop(const std::string& text) {
 }
 
 jobs::RenderRequest make_request(const Options& options, const CLI::App& command, const Session& session) {
-    jobs::RenderRequest request{options.scene, {}, {}, session.command_line};
+    jobs::RenderRequest request;
+    request.scene = options.scene;
+    request.command = session.command_line;
+    request.checkpoint = std::filesystem::path(options.output).replace_extension(".checkpoint");
+    request.checkpoint_interval_s = options.checkpoint_every;
+    request.keep_checkpoint = options.keep_checkpoint;
+    request.resume = options.resume;
+    request.sensor = options.sensor;
     for (const std::string& define : options.defines) {
         const size_t equals = define.find('=');
         if (equals == std::string::npos) throw Error(ErrorKind::usage, fmt::format("-D {}: write name=value", define));
@@ -76,9 +83,59 @@ jobs::RenderRequest make_request(const Options& options, const CLI::App& command
     return request;
 }
 
+// What a meter read, in words.
+void print(const render::Measurement& m, Console& console) {
+    const render::QuantityNames& names = render::names_of(m.quantity);
+    const std::string error =
+        m.standard_error > 0 ? fmt::format(" (standard error {:.2g})", m.standard_error) : std::string();
+    console.result(fmt::format("{}: {:.6g} {} over 380 .. 780 nm", names.name, m.radiometric[0], names.unit));
+    console.result(
+        fmt::format("{}: {:.6g} {}{}", names.photometric_name, m.photometric[0], names.photometric_unit, error));
+    if (m.radiometric[0] > 0)
+        console.result(fmt::format("polarization (S1, S2, S3)/S0: {:.4f} {:.4f} {:.4f}",
+                                   m.radiometric[1] / m.radiometric[0], m.radiometric[2] / m.radiometric[0],
+                                   m.radiometric[3] / m.radiometric[0]));
+    if (m.total_flux)
+        console.result(fmt::format("flux into all directions: {:.6g} W, {:.6g} lm; largest {}: {:.6g} {}",
+                                   (*m.total_flux)[0], (*m.total_flux)[1], names.photometric_name, m.peak,
+                                   names.photometric_unit));
+    if (m.exposure_s > 0)
+        console.result(fmt::format("times the exposure of {:.6g} s: {:.6g} {} s, {:.6g} {} s", m.exposure_s,
+                                   m.exposure_s * m.radiometric[0], names.unit, m.exposure_s * m.photometric[0],
+                                   names.photometric_unit));
+}
+
+nlohmann::json to_json(const render::Measurement& m, const StokesImage& image) {
+    const render::QuantityNames& names = render::names_of(m.quantity);
+    nlohmann::json document = {{"quantity", names.name},
+                               {"unit", names.unit},
+                               {"value", m.radiometric[0]},
+                               {"stokes", m.radiometric},
+                               {"photometric_quantity", names.photometric_name},
+                               {"photometric_unit", names.photometric_unit},
+                               {"photometric_value", m.photometric[0]},
+                               {"photometric_stokes", m.photometric},
+                               {"photometric_standard_error", m.standard_error},
+                               {"spectral_unit", names.spectral_unit},
+                               {"bin_edges_nm", image.bin_edges_nm},
+                               {"spectral_stokes", m.spectral}};
+    if (m.total_flux) {
+        document["flux_w"] = (*m.total_flux)[0];
+        document["luminous_flux_lm"] = (*m.total_flux)[1];
+        document["largest_photometric_value"] = m.peak;
+    }
+    if (m.exposure_s > 0) document["exposure_s"] = m.exposure_s;
+    return document;
+}
+
 int run(const Options& options, const CLI::App& command, Session& session) {
     const jobs::RenderRequest request = make_request(options, command, session);
     jobs::check_picture_output(options.output);
+    const bool checkpoint_there = std::filesystem::exists(request.checkpoint);
+    if (checkpoint_there && !options.resume)
+        session.console.note(fmt::format("{} is there from a render that was stopped: --resume would go on with it",
+                                         request.checkpoint.string()));
+    if (!checkpoint_there && options.resume) session.console.note("there is no checkpoint: the render begins anew");
     const render::Pictures pictures = jobs::render_scene(request, session.control());
     const StokesImage& image = pictures.whole;
     std::vector<std::string> written = jobs::write_picture(options.output, image, options.stokes_rgb, options.png);
@@ -99,14 +156,17 @@ int run(const Options& options, const CLI::App& command, Session& session) {
                                    pictures.parts[part].second.metadata.at("light_paths")));
     if (!meta("neumann_norm").empty())
         console.result(fmt::format("norm of the transport operator, as seen here: {}", meta("neumann_norm")));
+    if (pictures.measurement) print(*pictures.measurement, console);
     nlohmann::json document = {{"schema", "patina/render/1"},
                                {"written", written},
                                {"width", image.width},
                                {"height", image.height},
                                {"metadata", image.metadata}};
+    if (pictures.measurement) document["measurement"] = to_json(*pictures.measurement, image);
     console.document(document);
     if (meta("stopped") == "yes") {
-        console.note("stopped early: the picture holds the passes that were done");
+        console.note(
+            "stopped early: the picture holds the samples that were done; the same command with --resume goes on");
         return static_cast<int>(ErrorKind::interrupted);
     }
     console.hint(fmt::format("patina image dolp {} -o dolp.png", options.output));
@@ -122,6 +182,7 @@ void add_render(CLI::App& program, Session& session) {
     command->add_option("scene", options->scene, "scene (Mitsuba 3 XML)")->required();
     command->add_option("-o,--output", options->output, "picture to write (.exr)")->required();
     command->add_option("--integrator", options->integrator, "in place of the scene's");
+    command->add_option("--sensor", options->sensor, "of a scene with several: its id, or its number from 0");
     command->add_option("--spp", options->samples, "samples per pixel")->check(CLI::Range(1, 1 << 24));
     command->add_option("--time", options->time, "stop after this time: 90s, 5m, 1h");
     command->add_option("--noise", options->noise, "stop at this relative noise, as in 0.01")
@@ -129,6 +190,12 @@ void add_render(CLI::App& program, Session& session) {
     command->add_option("--size", options->size, "film size WIDTHxHEIGHT");
     command->add_option("--crop", options->crop, "window of pixels x0,y0,x1,y1");
     command->add_option("--seed", options->seed, "seed of the random numbers; the same seed gives the same bits");
+    command->add_flag("--resume", options->resume,
+                      "go on where a stopped render of the same picture was (OUT.checkpoint), to the same bits");
+    command->add_option("--checkpoint-every", options->checkpoint_every, "seconds between checkpoints (default 60)")
+        ->check(CLI::Range(0.01, 1e9));
+    command->add_flag("--keep-checkpoint", options->keep_checkpoint,
+                      "keep OUT.checkpoint when done, so that --resume can add samples");
     command->add_option("-D,--define", options->defines, "set a <default> of the scene: name=value (repeatable)")
         ->take_all()
         ->allow_extra_args(false);

@@ -16,7 +16,12 @@ using optics::OpticalConstants;
 // From this total volume fraction on, `packing = "auto"` takes the interference between particles into account: there
 // it changes the transport cross section of a white pigment by a twentieth (docs/theory.md).
 constexpr double automatic_packing_from = 0.05;
-constexpr double strongest_binder_absorption = 1e-4;
+// Refraction takes the binder's n alone. At this k the reflectance of a surface at the normal lacks 4 n k^2/(n+1)^4,
+// 4e-4, and light travels a wavelength or two: beyond, neither a real index nor rays make sense.
+constexpr double strongest_binder_absorption = 0.05;
+constexpr double neglected_reflectance = 5e-4;
+// From this k on that is reported.
+constexpr double reported_binder_absorption = 1e-3;
 // Indices this near to each other reflect less than 1e-7 at all but grazing angles.
 constexpr double same_index = 1e-3;
 
@@ -43,36 +48,83 @@ class ProblemBuilder {
     }
 
     rt::Layer layer_of(const Composition& layer) {
+        const std::complex<double> host = binder_index(layer);
+        double total_fraction = 0.0;
+        for (const Pigment& pigment : layer.pigments) total_fraction += pigment.volume_fraction;
+
+        const double packing_fraction = packing_of(layer, total_fraction);
+        std::vector<optics::MixtureComponent> components;
+        for (const Pigment& pigment : layer.pigments) {
+            const optics::ScatteringProperties properties =
+                std::visit([&](const auto& particles) { return properties_of(particles, host, packing_fraction); },
+                           pigment.particles);
+            components.push_back({properties, pigment.volume_fraction / properties.mean_volume_um3});
+        }
+        const optics::ScatteringMedium particles = optics::mix(components);
+
+        // The binder absorbs everywhere; what the particles take away by replacing it is in their cross sections.
+        const double extinction_per_um = binder_absorption_per_um(host) + particles.extinction_per_um;
+        const double absorption_per_um = extinction_per_um - particles.scattering_per_um;
+        if (absorption_per_um < -1e-9 * std::abs(particles.scattering_per_um))
+            throw Error(ErrorKind::input,
+                        fmt::format("layer of {}: more light would leave than enters at {:g} nm (the particles scatter "
+                                    "{:g} and the layer extinguishes {:g} per um; with k = {:g} and particles this "
+                                    "large the theory of an absorbing binder does not hold) use a smaller k",
+                                    layer.binder.name(), wavelength_nm_, particles.scattering_per_um, extinction_per_um,
+                                    host.imag()));
+        const double albedo = extinction_per_um > 0.0 ? particles.scattering_per_um / extinction_per_um : 0.0;
+        return {extinction_per_um * layer.thickness_um, std::clamp(albedo, 0.0, 1.0), particles.expansion, host.real()};
+    }
+
+    std::complex<double> binder_index(const Composition& layer) {
         const std::complex<double> host = index_of(layer.binder);
         if (host.imag() > strongest_binder_absorption)
             throw Error(
                 ErrorKind::input,
-                fmt::format(
-                    "binder {}: k = {:g} at {:g} nm (scattering in so absorbing a host is not covered; at most {:g})",
-                    layer.binder.name(), host.imag(), wavelength_nm_, strongest_binder_absorption));
-        double total_fraction = 0.0;
-        for (const Pigment& pigment : layer.pigments) total_fraction += pigment.volume_fraction;
-
-        std::vector<optics::MixtureComponent> components;
-        for (const Pigment& pigment : layer.pigments)
-            components.push_back(component_of(pigment, host.real(), packing_of(layer, total_fraction)));
-        const optics::ScatteringMedium particles = optics::mix(components);
-
-        // The binder absorbs in the volume it fills: 4 pi k / lambda per length.
-        const double binder_absorption_per_um =
-            4.0 * pi * host.imag() / (1e-3 * wavelength_nm_) * (1.0 - total_fraction);
-        const double extinction_per_um = particles.extinction_per_um + binder_absorption_per_um;
-        const double albedo = extinction_per_um > 0.0 ? particles.scattering_per_um / extinction_per_um : 0.0;
-        return {extinction_per_um * layer.thickness_um, std::min(1.0, albedo), particles.expansion, host.real()};
+                fmt::format("binder {}: k = {:g} at {:g} nm (refraction at its surface would depend on k, and light "
+                            "would not get through a wavelength of it; at most {:g})",
+                            layer.binder.name(), host.imag(), wavelength_nm_, strongest_binder_absorption));
+        if (host.imag() >= reported_binder_absorption)
+            result_.notes.push_back(
+                fmt::format("binder {} absorbs (k above {:g}): its surface refracts by n alone, which changes its "
+                            "reflectance at the "
+                            "normal by less than {:g}",
+                            layer.binder.name(), reported_binder_absorption, neglected_reflectance));
+        return host;
     }
 
-    optics::MixtureComponent component_of(const Pigment& pigment, double host_index, double packing_fraction) {
+    double binder_absorption_per_um(std::complex<double> host) const {
+        return 4.0 * pi * host.imag() / (1e-3 * wavelength_nm_);
+    }
+
+    optics::ScatteringProperties properties_of(const Spheres& spheres, std::complex<double> host,
+                                               double packing_fraction) {
         optics::ScatteringOptions options;
         options.tolerance = tolerance_;
         options.packing_fraction = packing_fraction;
-        const optics::ScatteringProperties properties =
-            optics::scatter(index_of(pigment.material), host_index, wavelength_nm_, pigment.size, options);
-        return {properties, pigment.volume_fraction / properties.mean_volume_um3};
+        const optics::ScatteringProperties ordinary =
+            optics::scatter(index_of(spheres.material), host, wavelength_nm_, spheres.size, options);
+        if (!spheres.extraordinary) return ordinary;
+        result_.notes.push_back(
+            fmt::format("{} with {}: birefringent particles as 2/3 and 1/3 isotropic ones (exact cross sections for "
+                        "small ones; depolarization by their anisotropy is left out)",
+                        spheres.material.name(), spheres.extraordinary->name()));
+        return optics::average_birefringent(
+            ordinary, optics::scatter(index_of(*spheres.extraordinary), host, wavelength_nm_, spheres.size, options));
+    }
+
+    // What is known of them is of a clear host; the binder that they replace is taken off.
+    optics::ScatteringProperties properties_of(const optics::ExternalParticles& particles, std::complex<double> host,
+                                               double packing_fraction) {
+        if (!optics::covers(particles, wavelength_nm_) && recipe_.extrapolation == optics::Extrapolation::hold)
+            result_.notes.push_back(fmt::format("{}: its ends are held outside its wavelengths", particles.name));
+        optics::ScatteringProperties properties =
+            optics::pack(optics::scatter(particles, wavelength_nm_, recipe_.extrapolation), packing_fraction,
+                         host.real(), wavelength_nm_);
+        const double replaced_um2 = binder_absorption_per_um(host) * properties.mean_volume_um3;
+        properties.absorption_um2 -= replaced_um2;
+        properties.extinction_um2 -= replaced_um2;
+        return properties;
     }
 
     // The volume fraction whose interference counts, 0 for independent particles.

@@ -18,9 +18,10 @@ struct OpticalProblem {
 // The problem at a vacuum wavelength. `tolerance` bounds the relative error of cross sections and coefficients.
 //
 // A layer of thickness d holds N_p = f_p / <V_p> particles per volume of each pigment p (f_p volume fraction, <V> mean
-// volume), so that tau = d (sum N_p C_ext,p + (1 - f) 4 pi k_host / lambda); the binder's own absorption is added to
-// that of real-host Mie, which holds for k_host <= 1e-4 (Mishchenko & Yang 2018, J. Quant. Spectrosc. Radiat. Transf.
-// 205, 241); a stronger absorption is an Error(input).
+// volume), so that tau = d (4 pi k_host / lambda + sum N_p C_ext,p). C_ext of a sphere in an absorbing binder is that
+// of the coherent field and counts the binder it replaces (MieSphere::in_absorbing_host); particles known from
+// elsewhere keep their cross sections but for 4 pi k_host V / lambda. Refraction takes the binder's n alone. Throws
+// Error(input) for a binder of k > 0.05, and where the particles would scatter more than the layer extinguishes.
 OpticalProblem optical_problem(const Recipe& recipe, double wavelength_nm, double tolerance = 1e-5);
 
 }  // namespace patina::coating

@@ -11,16 +11,25 @@
 #include "patina/core/error.h"
 #include "patina/optics/refractive_index.h"
 #include "patina/optics/scattering/expansion_coefficients.h"
+#include "patina/optics/scattering/external_particles.h"
 #include "patina/optics/scattering/size_distribution.h"
 #include "patina/rt/problem.h"
 #include "patina/spectral/spectrum.h"
 
 namespace patina::coating {
 
-struct Pigment {
+// Homogeneous spheres; with `extraordinary` randomly oriented uniaxial ones whose ordinary ray sees `material`.
+struct Spheres {
     optics::OpticalConstants material;
-    double volume_fraction = 0.0;  // of the dry film
     optics::SizeDistribution size;
+    std::optional<optics::OpticalConstants> extraordinary;
+};
+
+struct Pigment {
+    double volume_fraction = 0.0;  // of the dry film
+    std::variant<Spheres, optics::ExternalParticles> particles;
+
+    const std::string& name() const;  // of the material or of the file
 };
 
 // How neighbouring particles' fields interfere (docs/theory.md).
@@ -78,8 +87,5 @@ Recipe read_recipe(const std::filesystem::path& path, const std::vector<std::str
 // The same from text; `name` stands for the file in messages.
 Recipe parse_recipe(const std::string& text, const std::string& name, const std::filesystem::path& folder,
                     const std::vector<std::string>& settings = {});
-
-// Coefficients from CSV with the header l,alpha1,alpha2,alpha3,alpha4,beta1,beta2 and one row an order, from l = 0 on.
-optics::ExpansionCoefficients read_expansion_csv(const std::filesystem::path& path);
 
 }  // namespace patina::coating

@@ -32,6 +32,7 @@ constexpr std::array layer_keys{
     KeyInfo{"name", text, "", "", "for people"},
     KeyInfo{"thickness_um", number, "um", "", "dry film thickness", 0.0, 1e7},
     KeyInfo{"binder", text, "", "", "a built-in material, an n,k file, or { n = 1.5, k = 0 }"},
+    KeyInfo{"binder_density_g_cm3", number, "g/cm3", "", "of the binder, for pigments given by weight", 0.01, 30.0},
     KeyInfo{"pigments", array, "", "", "the particles in the binder"},
     KeyInfo{"packing", text, "", "auto",
             "\"auto\" | \"percus-yevick\" | \"independent\": interference of densely packed particles (auto: from a "
@@ -44,14 +45,40 @@ constexpr std::array layer_keys{
     KeyInfo{"single_scattering_albedo", number, "1", "", "in place of a composition", 0.0, 1.0},
     KeyInfo{"expansion", text, "", "",
             "in place of a composition: CSV file with header l,alpha1,alpha2,alpha3,alpha4,beta1,beta2"},
+    KeyInfo{"matrix", text, "", "",
+            "in place of expansion: CSV file with header angle_deg,F11,F12,F22,F33,F34,F44, from 0 to 180 degrees"},
     KeyInfo{"refractive_index", number, "1", "1", "of a layer given in optical terms", 0.1, 10.0},
 };
 
 constexpr std::array pigment_keys{
     KeyInfo{"material", text, "", "", "a built-in material, an n,k file, or { n = 2.75, k = 0 }"},
+    KeyInfo{"material_ordinary", text, "", "",
+            "in place of material, birefringent particles of any orientation: the material of the ordinary ray"},
+    KeyInfo{"material_extraordinary", text, "", "", "the material of the extraordinary ray"},
     KeyInfo{"volume_fraction", number, "1", "", "volume of the particles / volume of the dry film (PVC / 100)", 0.0,
             0.74, true},
+    KeyInfo{"pvc_percent", number, "%", "",
+            "in place of volume_fraction: pigment volume concentration (ASTM D5146), of a film without voids", 0.0,
+            74.0, true},
+    KeyInfo{"weight_percent", number, "%", "",
+            "in place of volume_fraction: mass of the particles in the dry film; needs all densities", 0.0, 100.0,
+            true},
+    KeyInfo{"number_density_per_um3", number, "1/um3", "",
+            "in place of volume_fraction: particles in a volume of the dry film", 0.0, 1e12, true},
+    KeyInfo{"density_g_cm3", number, "g/cm3", "", "of the pigment, for concentrations by weight", 0.01, 30.0},
     KeyInfo{"size", table, "", "", "the size distribution of the particles' radii"},
+    KeyInfo{"matrix", text, "", "",
+            "in place of material and size: CSV file of scattering matrices, header [wavelength_nm,]"
+            "angle_deg,F11,F12,F22,F33,F34,F44"},
+    KeyInfo{"expansion", text, "", "",
+            "in place of material and size: CSV file of coefficients, header [wavelength_nm,]"
+            "l,alpha1,alpha2,alpha3,alpha4,beta1,beta2"},
+    KeyInfo{"cross_sections", text, "", "",
+            "with matrix or expansion: CSV file wavelength_nm,extinction_um2,scattering_um2, per particle"},
+    KeyInfo{"extinction_um2", number, "um2", "", "in place of cross_sections: the same at every wavelength", 0.0, 1e9},
+    KeyInfo{"scattering_um2", number, "um2", "", "in place of cross_sections: the same at every wavelength", 0.0, 1e9},
+    KeyInfo{"particle_volume_um3", number, "um3", "", "with matrix or expansion: mean volume of a particle", 1e-15,
+            1e10},
 };
 
 constexpr std::array size_keys{

@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
+#include "patina/coating/material_reader.h"
+#include "patina/coating/pigment_reader.h"
 #include "patina/coating/recipe.h"
-#include "patina/coating/size_reader.h"
+#include "patina/coating/scattering_csv.h"
 #include "patina/coating/table_reader.h"
 #include "patina/core/files.h"
-#include "patina/optics/materials.h"
 #include "patina/spectral/spectrum_file.h"
 
 namespace patina::coating {
@@ -18,50 +19,12 @@ namespace fs = std::filesystem;
 constexpr std::size_t most_layers = 1000;
 constexpr int most_nested_recipes = 8;
 constexpr std::uint64_t largest_recipe = std::uint64_t{16} << 20;
-constexpr double densest_packing = 0.74;  // of equal spheres; more cannot be meant
-
-// Where the recipe's own files are looked for, and how it is named in messages.
-struct Context {
-    std::string file;
-    fs::path folder;
-    int depth = 0;  // how many recipes lie on this one
-};
 
 Recipe read_recipe_at(const fs::path& path, int depth);
 
-// A material given by name, by file, or as { n, k }; `key` must be present.
-optics::OpticalConstants read_material(const TableReader& reader, std::string_view key, const Context& context) {
-    const toml::node* node = reader.node(key);
-    if (!node) (void)reader.text(key);  // says that it is missing
-    if (node->is_string()) {
-        try {
-            return optics::material(*node->value<std::string>(), context.folder);
-        } catch (const Error& error) {
-            throw input_error(reader.where(key), reader.path_of(key), error.what());
-        }
-    }
-    if (!node->is_table()) reader.wrong_type(key, "material: a name, a file, or { n = 1.5, k = 0 }");
-
-    static constexpr std::array keys{
-        KeyInfo{"n", KeyType::number, "1", "", "real part of the refractive index", 1e-3, 100.0},
-        KeyInfo{"k", KeyType::number, "1", "0", "imaginary part of the refractive index, absorbing when positive", 0.0,
-                100.0}};
-    const TableReader index(*node->as_table(), keys, reader.path_of(key), context.file);
-    return optics::OpticalConstants::constant({index.number("n"), index.optional_number("k").value_or(0.0)});
-}
-
-Pigment read_pigment(const toml::table& table, const std::string& path, const Context& context) {
-    const TableReader reader(table, recipe_keys("[[layers.pigments]]"), path, context.file);
-    const toml::table* size = reader.table("size");
-    if (!size)
-        throw input_error(reader.where(), fmt::format("{} is missing", reader.path_of("size")), "",
-                          "write size = { distribution = \"mono\", radius_um = 0.2 }");
-    return {read_material(reader, "material", context), reader.number("volume_fraction"),
-            read_size_distribution(TableReader(*size, recipe_keys("size"), reader.path_of("size"), context.file))};
-}
-
 Composition read_composition(const TableReader& reader, const Context& context) {
-    static constexpr std::string_view optical_keys[] = {"single_scattering_albedo", "expansion", "refractive_index"};
+    static constexpr std::string_view optical_keys[] = {"single_scattering_albedo", "expansion", "matrix",
+                                                        "refractive_index"};
     reader.forbid(optical_keys,
                   "the layer is given by its composition; an optical layer starts with optical_thickness");
 
@@ -73,22 +36,14 @@ Composition read_composition(const TableReader& reader, const Context& context) 
 
     composition.volume_solids = reader.optional_number("volume_solids");
 
-    double total_fraction = 0.0;
-    const std::vector<const toml::table*> pigments = reader.tables("pigments");
-    for (size_t i = 0; i < pigments.size(); ++i) {
-        composition.pigments.push_back(
-            read_pigment(*pigments[i], fmt::format("{}.{}", reader.path_of("pigments"), i), context));
-        total_fraction += composition.pigments.back().volume_fraction;
-    }
-    if (total_fraction > densest_packing)
-        throw input_error(reader.where("pigments"), fmt::format("the volume fractions add up to {:g}", total_fraction),
-                          fmt::format("spheres fill at most {}", densest_packing));
+    composition.pigments = read_pigments(reader, context);
     return composition;
 }
 
 OpticalLayer read_optical_layer(const TableReader& reader, bool is_lowest, const Context& context) {
-    static constexpr std::string_view composition_keys[] = {"thickness_um", "binder", "pigments", "packing",
-                                                            "volume_solids"};
+    static constexpr std::string_view composition_keys[] = {"thickness_um", "binder",  "binder_density_g_cm3",
+                                                            "pigments",     "packing", "volume_solids"};
+    static constexpr std::string_view expansion_key[] = {"expansion"};
     reader.forbid(composition_keys, "the layer is given in optical terms (it has optical_thickness)");
 
     OpticalLayer layer{reader.number("optical_thickness"),
@@ -98,12 +53,14 @@ OpticalLayer read_optical_layer(const TableReader& reader, bool is_lowest, const
     if (std::isinf(layer.optical_thickness) && !is_lowest)
         throw input_error(reader.where("optical_thickness"), "an infinite layer hides what lies below it",
                           "only the lowest layer may be infinite");
-    const std::string file = reader.text("expansion");
-    try {
-        layer.expansion = read_expansion_csv(context.folder / file);
-    } catch (const Error& error) {
-        throw fs::exists(context.folder / file) ? error : input_error(reader.where("expansion"), error.what());
-    }
+    const bool by_matrix = reader.has("matrix");
+    if (by_matrix) reader.forbid(expansion_key, "matrix says how the layer scatters");
+    const char* key = by_matrix ? "matrix" : "expansion";
+    const fs::path file = context.folder / reader.text(key);
+    std::error_code ignored;
+    if (!fs::exists(file, ignored))
+        throw input_error(reader.where(key), fmt::format("{}: file not found", file.string()));
+    layer.expansion = only_law(by_matrix ? read_matrix_csv(file) : read_expansion_csv(file), file);
     return layer;
 }
 
@@ -227,12 +184,18 @@ toml::node* step_into(toml::node& node, const std::string& step) {
     return array && is_index ? array->get(std::stoul(step)) : nullptr;
 }
 
+// A word of the command line that cannot be used.
+Error bad_setting(const std::string& setting, const std::string& why) {
+    constexpr std::size_t shown = 200;
+    return Error(ErrorKind::usage, fmt::format("--set {}{}: {}", setting.substr(0, shown),
+                                               setting.size() > shown ? "..." : "", why.substr(0, shown)));
+}
+
 // Makes the assignment "path.to.key=value" in the tree; the value is TOML, or a string when it is not.
 void assign(toml::table& root, const std::string& setting) {
     const size_t equals = setting.find('=');
     if (equals == std::string::npos || equals == 0)
-        throw Error(ErrorKind::usage,
-                    fmt::format("--set {}: write key=value, as in layers.0.thickness_um=30", setting));
+        throw bad_setting(setting, "write key=value, as in layers.0.thickness_um=30");
     std::vector<std::string> steps;
     std::istringstream path(setting.substr(0, equals));
     for (std::string step; std::getline(path, step, '.');) steps.push_back(step);
@@ -240,11 +203,15 @@ void assign(toml::table& root, const std::string& setting) {
     toml::node* node = &root;
     for (size_t i = 0; i + 1 < steps.size(); ++i) {
         node = step_into(*node, steps[i]);
-        if (!node) throw Error(ErrorKind::usage, fmt::format("--set {}: the recipe has no \"{}\"", setting, steps[i]));
+        if (!node) throw bad_setting(setting, fmt::format("the recipe has no \"{}\"", steps[i]));
     }
     toml::table* parent = node->as_table();
-    if (!parent)
-        throw Error(ErrorKind::usage, fmt::format("--set {}: \"{}\" is not a key of a table", setting, steps.back()));
+    if (!parent) throw bad_setting(setting, fmt::format("\"{}\" is not a key of a table", steps.back()));
+
+    // A pigment has one concentration: a new one takes the place of the old.
+    if (const auto begin = std::begin(concentration_keys), end = std::end(concentration_keys);
+        std::find(begin, end, steps.back()) != end)
+        for (const std::string_view key : concentration_keys) parent->erase(key);
 
     const std::string value = setting.substr(equals + 1);
     const auto insert = [&](const std::string& toml_value) {

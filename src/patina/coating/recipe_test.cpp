@@ -40,7 +40,7 @@ TEST(Recipe, ReadsEveryPart) {
     const auto& coat = std::get<Composition>(recipe.layers[1].content);
     EXPECT_EQ(coat.thickness_um, 4.0);
     ASSERT_EQ(coat.pigments.size(), 1u);
-    EXPECT_EQ(std::get<optics::Monodisperse>(coat.pigments[0].size.shape).radius_um, 0.1);
+    EXPECT_EQ(std::get<optics::Monodisperse>(std::get<Spheres>(coat.pigments[0].particles).size.shape).radius_um, 0.1);
     EXPECT_EQ(std::get<LambertianBase>(recipe.base).reflectance(500.0), 0.25);
 }
 

@@ -67,7 +67,7 @@ Facts inspect_recipe(const std::filesystem::path& path) {
                                : "given in optical terms";
         if (composition)
             for (const coating::Pigment& pigment : composition->pigments)
-                text += fmt::format(", {:g} of {}", pigment.volume_fraction, pigment.material.name());
+                text += fmt::format(", {:g} of {}", pigment.volume_fraction, pigment.name());
         facts.push_back({fmt::format("layer {}", i), text});
     }
     static constexpr const char* bases[] = {"none", "lambertian", "metal"};

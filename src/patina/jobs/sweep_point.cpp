@@ -10,6 +10,7 @@
 #include "patina/coating/paint_metrics_colour.h"
 #include "patina/core/error.h"
 #include "patina/core/files.h"
+#include "patina/core/fingerprint.h"
 #include "patina/version.h"
 
 namespace patina::jobs {
@@ -52,13 +53,6 @@ double nan_for_null(const json& value) {
     return value.is_null() ? undefined : value.get<double>();
 }
 
-// Fowler-Noll-Vo hash FNV-1a of 64 bits.
-std::uint64_t hash(std::string_view text) {
-    std::uint64_t value = 14695981039346656037ull;
-    for (const char c : text) value = (value ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-    return value;
-}
-
 // The numbers behind names and files of a recipe, at the wavelengths of interest.
 class Constants {
   public:
@@ -79,10 +73,22 @@ class Constants {
     }
     void add(const coating::Composition& layer) {
         add(layer.binder);
-        for (const coating::Pigment& pigment : layer.pigments) add(pigment.material);
+        for (const coating::Pigment& pigment : layer.pigments)
+            std::visit([&](const auto& particles) { add(particles); }, pigment.particles);
     }
-    void add(const coating::OpticalLayer& layer) {
-        const optics::ExpansionCoefficients& x = layer.expansion;
+    void add(const coating::Spheres& spheres) {
+        add(spheres.material);
+        if (spheres.extraordinary) add(*spheres.extraordinary);
+    }
+    void add(const optics::ExternalParticles& particles) {
+        for (const double wavelength : wavelengths_nm_) {
+            const optics::ScatteringProperties p = optics::scatter(particles, wavelength, recipe_.extrapolation);
+            text_ += fmt::format("{} {} ", p.extinction_um2, p.scattering_um2);
+            add(p.expansion);
+        }
+    }
+    void add(const coating::OpticalLayer& layer) { add(layer.expansion); }
+    void add(const optics::ExpansionCoefficients& x) {
         for (const auto* values : {&x.alpha1, &x.alpha2, &x.alpha3, &x.alpha4, &x.beta1, &x.beta2})
             text_ += fmt::format("{} ", fmt::join(*values, " "));
     }
@@ -166,7 +172,9 @@ std::string sweep_point_key(const coating::Recipe& recipe, const coating::PaintO
                                         fmt::join(stack.wavelengths_nm, " "), stack.tolerance, stack.streams,
                                         stack.solver, options.white_reflectance, options.wanted_contrast_ratio,
                                         Constants(recipe, stack.wavelengths_nm).text());
-    return fmt::format("{:016x}", hash(all));
+    Fingerprint fingerprint;
+    fingerprint.add(all);
+    return fingerprint.hex();
 }
 
 void write_sweep_point(const std::filesystem::path& path, const std::string& key,

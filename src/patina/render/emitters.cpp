@@ -37,7 +37,7 @@ struct Draw {
         if (!geometry.sample_shape(e.shape, from, u, at)) return false;
         const Vec3 d = at.position - from;
         out.distance = d.norm();
-        out.direction = d / out.distance;
+        out.direction = d * (1 / out.distance);
         if (out.direction.dot(at.normal) >= 0) return false;
         out.normal = at.normal;
         out.pdf = at.pdf;
@@ -91,8 +91,10 @@ float emitted_power(const Emitter& emitter, const Geometry& geometry) {
     return std::visit(PowerOf{geometry}, emitter);
 }
 
-Lights::Lights(std::vector<Emitter> emitters, const Geometry& geometry)
-    : emitters_(std::move(emitters)), slot_(emitters_.size(), -1) {
+Lights::Lights(std::vector<Emitter> emitters, const Geometry& geometry, std::vector<EmitterPolarization> states)
+    : emitters_(std::move(emitters)), states_(std::move(states)), slot_(emitters_.size(), -1) {
+    states_.resize(emitters_.size());
+    for (const EmitterPolarization& state : states_) any_polarized_ |= state.polarized();
     std::vector<double> powers;
     for (int i = 0; i < static_cast<int>(emitters_.size()); ++i) {
         const bool constant = std::holds_alternative<ConstantEmitter>(emitters_[i]);
@@ -116,12 +118,23 @@ Lights::Lights(std::vector<Emitter> emitters, const Geometry& geometry)
 bool Lights::sample(const Geometry& geometry, const Vec3& from, const Wavelengths& w, float u, const Vec2& u2,
                     LightSample& sample) const {
     const DiscreteDistribution::Choice choice = choice_.sample(u);
-    sample.delta = false;
-    sample.distance = INFINITY;
-    sample.emitter = sampled_[choice.index];
-    if (!std::visit(Draw{geometry, from, w, u2, sample}, emitters_[sample.emitter])) return false;
+    if (!sample_emitter(sampled_[choice.index], geometry, from, w, u2, sample)) return false;
     sample.pdf *= choice.probability;
     return true;
+}
+
+bool Lights::sample_emitter(int emitter, const Geometry& geometry, const Vec3& from, const Wavelengths& w,
+                            const Vec2& u2, LightSample& sample) const {
+    sample.delta = false;
+    sample.distance = INFINITY;
+    sample.emitter = emitter;
+    return std::visit(Draw{geometry, from, w, u2, sample}, emitters_[emitter]);
+}
+
+bool Lights::is_delta(int emitter) const {
+    const Emitter& e = emitters_[emitter];
+    return std::holds_alternative<PointEmitter>(e) || std::holds_alternative<SpotEmitter>(e) ||
+           std::holds_alternative<DirectionalEmitter>(e);
 }
 
 }  // namespace patina::render

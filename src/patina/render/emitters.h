@@ -1,10 +1,12 @@
 #pragma once
-// Light sources. All are unpolarized: a radiance per wavelength, the Stokes vector (L, 0, 0, 0).
+// Light sources: a radiance per wavelength, and a state of polarization that the integrators apply where the light
+// arrives (emitter_polarization.h, arriving_light.h).
 
 #include <variant>
 #include <vector>
 
 #include "patina/render/bsdf.h"
+#include "patina/render/emitter_polarization.h"
 #include "patina/render/geometry.h"
 #include "patina/render/spectrum.h"
 
@@ -81,13 +83,20 @@ float emitted_power(const Emitter& emitter, const Geometry& geometry);
 class Lights {
   public:
     Lights() = default;
-    // Emitters in the order of the scene; the geometry must be committed.
-    Lights(std::vector<Emitter> emitters, const Geometry& geometry);
+    // Emitters in the order of the scene, each with its state of polarization (none given: all unpolarized); the
+    // geometry must be committed.
+    Lights(std::vector<Emitter> emitters, const Geometry& geometry, std::vector<EmitterPolarization> states = {});
 
     // Draws a light and a direction to it; false: no light can be seen this way. The pdf includes the choice of the
     // light.
     bool sample(const Geometry& geometry, const Vec3& from, const Wavelengths& w, float u, const Vec2& u2,
                 LightSample& sample) const;
+
+    // The same of one emitter, its choice not in the pdf.
+    bool sample_emitter(int emitter, const Geometry& geometry, const Vec3& from, const Wavelengths& w, const Vec2& u2,
+                        LightSample& sample) const;
+    // Points and parallel light: nothing meets them by chance.
+    bool is_delta(int emitter) const;
 
     // Radiance that leaves a surface towards `outgoing` (world).
     Float4 surface_radiance(int emitter, const SurfacePoint& at, const Vec3& outgoing, const Wavelengths& w) const {
@@ -104,21 +113,31 @@ class Lights {
         return slot_[emitter] < 0 ? 0.0f : choice_.probability(slot_[emitter]);
     }
     const std::vector<int>& environments() const { return environments_; }
-    // What comes from infinity, each environment with its density in sample() (0: never sampled).
+    // What comes from infinity: visit(radiance, density in sample() (0: never sampled), emitter).
     template <class Visitor>
     void for_each_environment(const Vec3& direction, const Wavelengths& w, const Visitor& visit) const {
         for (int index : environments_) {
             if (const auto* constant = std::get_if<ConstantEmitter>(&emitters_[index]))
-                visit(constant->radiance.at(w), 0.0f);
+                visit(constant->radiance.at(w), 0.0f, index);
             if (const auto* map = std::get_if<EnvironmentEmitter>(&emitters_[index]))
-                visit(map->radiance(w, direction), choice_.probability(slot_[index]) * map->pdf(direction));
+                visit(map->radiance(w, direction), choice_.probability(slot_[index]) * map->pdf(direction), index);
         }
     }
     bool any_sampled() const { return !sampled_.empty(); }
+
+    bool any_polarized() const { return any_polarized_; }
+    bool polarized(int emitter) const { return any_polarized_ && states_[emitter].polarized(); }
+    // An emitter's light of this intensity on its way along `travel`.
+    LightBeam beam(int emitter, Float4 intensity, const Vec3& travel) const {
+        return polarized(emitter) ? states_[emitter].light(intensity, travel)
+                                  : LightBeam::unpolarized(intensity, travel);
+    }
     const std::vector<Emitter>& all() const { return emitters_; }
 
   private:
     std::vector<Emitter> emitters_;
+    std::vector<EmitterPolarization> states_;  // of the emitters
+    bool any_polarized_ = false;
     std::vector<int> sampled_;       // emitters that sample() draws from
     std::vector<int> slot_;          // of an emitter in sampled_, -1 for none
     std::vector<int> environments_;  // emitters at infinity that paths run into

@@ -17,10 +17,13 @@ namespace patina::render {
 // One <shape> of the scene.
 struct Shape {
     int bsdf = -1;
-    int emitter = -1;          // -1: does not emit
-    int first = 0, count = 0;  // its analytic shapes, or the one mesh
+    int emitter = -1;                  // -1: does not emit
+    int interior = -1, exterior = -1;  // media inside and outside, -1: none
+    int first = 0, count = 0;          // its analytic shapes, or the one mesh
     bool is_mesh = false;
     float area = 0;
+
+    bool bounds_media() const { return interior >= 0 || exterior >= 0; }
 };
 
 struct MeshShape {
@@ -76,6 +79,10 @@ class Geometry {
                 if (analytic[i].intersect(ray, i, hit)) return true;
         return embree_ && embree_->occluded(ray);
     }
+
+    // The same for the first `count` rays of a block, one result a ray; occluded() sets bit k for ray k.
+    void intersect(RayBlock& rays, int count, Hit* hits) const;
+    std::uint32_t occluded(RayBlock& rays, int count) const;
 
     SurfacePoint surface(const Ray& ray, const Hit& hit) const;
 

@@ -4,6 +4,7 @@
 
 #include "patina/core/error.h"
 #include "patina/render/bsdf_set.h"
+#include "patina/render/medium.h"
 
 namespace patina::render {
 
@@ -32,55 +33,74 @@ void add_shapes(std::vector<PluginDescriptor>& all) {
                {"flip_tex_coords", "boolean", "", "true for obj", "", "v counts from the top of the texture"}});
 }
 
+const std::vector<ParameterDescriptor> polarization = {
+    {"polarization", "string", "", "unpolarized", "unpolarized, linear, circular, elliptical", "state of the light"},
+    {"polarization_degree", "number", "", "1", "0 .. 1", "degree of polarization"},
+    {"polarization_angle", "number", "degree", "0", "-360 .. 360", "of the ellipse's long axis from polarization_axis"},
+    {"polarization_ellipticity", "number", "degree", "45 (circular), 22.5", "-45 .. 45", "> 0 right-handed"},
+    {"polarization_axis", "vector", "", "own x axis; surroundings y", "", "where angles count from"},
+    {"stokes", "string", "", "", "Q^2 + U^2 + V^2 <= I^2", "I, Q, U, V instead of the words"}};
+
 void add_emitters(std::vector<PluginDescriptor>& all) {
-    all.push_back({"emitter",
-                   "area",
-                   "A shape that shines from its outside.",
-                   {{"radiance", "spectrum", "W/(m^2 sr nm)", "1", ">= 0", "the same into every direction"}}});
-    all.push_back({"emitter",
-                   "point",
-                   "A point that shines into every direction.",
-                   {{"position", "point", "scene units", "0, 0, 0", "", "its place"},
-                    to_world,
-                    {"intensity", "spectrum", "W/(sr nm)", "1", ">= 0", "radiant intensity"}}});
-    all.push_back(
-        {"emitter",
-         "spot",
-         "A cone of light along +z.",
-         {to_world,
-          {"intensity", "spectrum", "W/(sr nm)", "1", ">= 0", "radiant intensity inside beam_width"},
-          {"cutoff_angle", "number", "degree", "20", "0 .. 180", "beyond it nothing"},
-          {"beam_width", "number", "degree", "3/4 of cutoff_angle", "0 .. cutoff_angle", "until it constant"}}});
-    all.push_back({"emitter",
-                   "directional",
-                   "Parallel light.",
-                   {{"direction", "vector", "", "+z through to_world", "", "in which the light travels"},
-                    to_world,
-                    {"irradiance", "spectrum", "W/(m^2 nm)", "1", ">= 0", "on a plane across the light"}}});
-    all.push_back({"emitter",
-                   "constant",
-                   "The same radiance from everywhere.",
-                   {{"radiance", "spectrum", "W/(m^2 sr nm)", "1", ">= 0", "of the surroundings"}}});
-    all.push_back({"emitter",
-                   "envmap",
-                   "Surroundings as a latitude-longitude picture, y up.",
-                   {{"filename", "path", "", "", "", "the picture"},
-                    {"scale", "number", "", "1", ">= 0", "factor on its radiance"},
-                    to_world}});
+    const auto emitter = [&](const char* name, const char* doc, std::vector<ParameterDescriptor> parameters) {
+        parameters.insert(parameters.end(), polarization.begin(), polarization.end());
+        all.push_back({"emitter", name, doc, std::move(parameters)});
+    };
+    const ParameterDescriptor sun = {"sun_direction", "vector", "",
+                                     "0, 1, 0",       "",       "towards the sun, for polarization \"rayleigh\""};
+    emitter("area", "A shape that shines from its outside.",
+            {{"radiance", "spectrum", "W/(m^2 sr nm)", "1", ">= 0", "the same into every direction"}});
+    emitter("point", "A point that shines into every direction.",
+            {{"position", "point", "scene units", "0, 0, 0", "", "its place"},
+             to_world,
+             {"intensity", "spectrum", "W/(sr nm)", "1", ">= 0", "radiant intensity"}});
+    emitter("spot", "A cone of light along +z.",
+            {to_world,
+             {"intensity", "spectrum", "W/(sr nm)", "1", ">= 0", "radiant intensity inside beam_width"},
+             {"cutoff_angle", "number", "degree", "20", "0 .. 180", "beyond it nothing"},
+             {"beam_width", "number", "degree", "3/4 of cutoff_angle", "0 .. cutoff_angle", "until it constant"}});
+    emitter("directional", "Parallel light.",
+            {{"direction", "vector", "", "+z through to_world", "", "in which the light travels"},
+             to_world,
+             {"irradiance", "spectrum", "W/(m^2 nm)", "1", ">= 0", "on a plane across the light"}});
+    emitter("constant", "The same radiance from everywhere.",
+            {{"radiance", "spectrum", "W/(m^2 sr nm)", "1", ">= 0", "of the surroundings"}, to_world, sun});
+    emitter("envmap", "Surroundings as a latitude-longitude picture, y up.",
+            {{"filename", "path", "", "", "", "the picture"},
+             {"scale", "number", "", "1", ">= 0", "factor on its radiance"},
+             to_world,
+             sun});
 }
 
-void add_camera(std::vector<PluginDescriptor>& all) {
-    std::vector<ParameterDescriptor> camera = {
+void add_sensors(std::vector<PluginDescriptor>& all) {
+    const auto sensor = [&](const char* name, const char* doc, std::vector<ParameterDescriptor> parameters) {
+        parameters.push_back({"shutter_open", "number", "s", "0", "", "when light begins to count"});
+        parameters.push_back({"shutter_close", "number", "s", "shutter_open", ">= shutter_open", "and ends"});
+        all.push_back({"sensor", name, doc, std::move(parameters)});
+    };
+    const std::vector<ParameterDescriptor> planes = {
         to_world,
-        {"fov", "number", "degree", "39.6", "0 .. 180", "field of view along fov_axis"},
-        {"fov_axis", "string", "", "x", "x, y, diagonal, smaller, larger", "what fov measures"},
-        {"focal_length", "string", "mm", "50mm", "> 0", "instead of fov, on 36 x 24 mm film"},
         {"near_clip", "number", "scene units", "0.01", "", "accepted, without effect"},
         {"far_clip", "number", "scene units", "10000", "", "accepted, without effect"}};
-    all.push_back({"sensor", "perspective", "Pinhole camera.", camera});
+    std::vector<ParameterDescriptor> camera = planes;
+    camera.push_back({"fov", "number", "degree", "39.6", "0 .. 180", "field of view along fov_axis"});
+    camera.push_back({"fov_axis", "string", "", "x", "x, y, diagonal, smaller, larger", "what fov measures"});
+    camera.push_back({"focal_length", "string", "mm", "50mm", "> 0", "instead of fov, on 36 x 24 mm film"});
+    sensor("perspective", "Pinhole camera.", camera);
     camera.push_back({"aperture_radius", "number", "scene units", "", ">= 0", "of the lens"});
     camera.push_back({"focus_distance", "number", "scene units", "", "> 0", "of the plane in focus"});
-    all.push_back({"sensor", "thinlens", "Camera with depth of field.", camera});
+    sensor("thinlens", "Camera with depth of field.", camera);
+    sensor("orthographic", "Parallel rays; the film is -1 .. 1 along x of the sensor's own space.", planes);
+    sensor("radiancemeter", "Radiance along the ray from the origin of to_world along +z.", {to_world});
+    sensor("irradiancemeter", "Irradiance on the outside of the shape it stands in, the mean over its area.", {});
+    sensor("fluxmeter", "Flux onto the outside of the shape it stands in.", {});
+    sensor("radiositymeter", "Radiosity (exitance) of the outside of the shape it stands in: emitted and reflected.",
+           {});
+    sensor("goniophotometer", "Far-field intensity of everything in the scene over all directions.", {to_world});
+    sensor("distant", "Radiance that leaves the scene against one direction, the mean over its cross section.",
+           {to_world,
+            {"direction", "vector", "", "0, 0, 1", "", "instead of to_world: in which the sensor looks"},
+            {"target", "point", "scene units", "", "", "look at this point alone"}});
 }
 
 void add_film(std::vector<PluginDescriptor>& all) {
@@ -128,6 +148,8 @@ void add_integrators(std::vector<PluginDescriptor>& all) {
         {"light_samples", "integer", "", "1; distribution 4", ">= 1", "shadow rays at the first surface"},
         {"lobe_samples", "integer", "", "1; distribution 4", ">= 1", "rays into the lobe of the first surface"}};
     integrator("path", "Path tracing with light sampling, polarized.", "false");
+    for (const char* name : {"volumetric", "volpath", "volpathmis"})
+        integrator(name, "Path tracing through media, polarized.", "false");
     integrator("appel", "Direct light only: E(D|G)L.", "true", spread);
     integrator("whitted", "Direct light, mirrors and refraction: ES*(D|G)L.", "true", spread);
     integrator("distribution", "Distribution ray tracing: E(S|G)*(D|G)?L.", "false", spread);
@@ -158,9 +180,10 @@ void add_integrators(std::vector<PluginDescriptor>& all) {
 
 std::vector<PluginDescriptor> build_registry() {
     std::vector<PluginDescriptor> all = bsdf_descriptors();
+    for (PluginDescriptor& medium : medium_descriptors()) all.push_back(std::move(medium));
     add_shapes(all);
     add_emitters(all);
-    add_camera(all);
+    add_sensors(all);
     add_film(all);
     add_integrators(all);
     return all;

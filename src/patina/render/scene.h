@@ -11,6 +11,7 @@
 #include "patina/render/film.h"
 #include "patina/render/geometry.h"
 #include "patina/render/integrators/integrator.h"
+#include "patina/render/medium.h"
 #include "patina/render/sensor.h"
 
 namespace patina::render {
@@ -20,7 +21,10 @@ class Scene {
     Geometry geometry;
     std::vector<Bsdf> bsdfs;
     Lights lights;
+    std::vector<Medium> media;                          // shapes and the camera name them by index
+    int camera_medium = vacuum;                         // around the camera
     std::shared_ptr<const Properties> sensor_node;      // built anew when the film's size is overridden
+    int sensor_shape = -1;                              // that the sensor stands in
     std::shared_ptr<const Properties> integrator_node;  // likewise for the integrator; null: path tracing
     FilmSettings film;
     int samples_per_pixel = 16;

@@ -1,3 +1,5 @@
+#include <tuple>
+
 #include <fmt/format.h>
 
 #include "patina/core/error.h"
@@ -11,40 +13,50 @@ namespace {
 
 class SceneBuilder {
   public:
-    SceneBuilder(const Properties& root, const SceneResources& resources)
+    SceneBuilder(const Properties& root, const SceneResources& resources, const std::string& sensor)
         : root_(root),
+          chosen_sensor_(sensor),
           resources_(resources),
           bsdf_builder_{&resources, [this](const std::shared_ptr<const Properties>& node) { return bsdf_index(node); },
                         &scene_->notes} {}
 
     std::shared_ptr<const Scene> build() {
         scene_->matching = std::make_unique<const ColourMatching>();
-        build_camera();
+        for (const auto& node : root_.children_of("sensor")) sensors_.push_back({node, -1});
         if ((scene_->integrator_node = root_.only_child("integrator"))) build_integrator(*scene_->integrator_node);
         for (const auto& node : root_.children_of("bsdf")) bsdf_index(node);
+        for (const auto& node : root_.children_of("medium")) medium_index(node);
         for (const auto& node : root_.children_of("shape")) build_shape(*node);
-        for (const auto& node : root_.children_of("emitter")) emitters_.push_back(build_emitter(*node, resources_));
+        if (sensors_.empty()) throw input_error(root_.where, "the scene has no sensor");
+        for (const auto& node : root_.children_of("emitter")) {
+            states_.push_back(build_polarization(*node, node->transform("to_world")));
+            emitters_.push_back(build_emitter(*node, resources_));
+        }
         root_.children_of("texture");  // named ones, built where they are referenced
-        root_.expect_all_used({"integrator", "sensor", "bsdf", "shape", "emitter", "texture"});
+        root_.expect_all_used({"integrator", "sensor", "bsdf", "shape", "emitter", "texture", "medium"});
         if (emitters_.empty())
             throw input_error(root_.where, "the scene is dark", "it has no emitter",
                               "add one, for instance \"constant\"");
         scene_->geometry.needs_uv = any_texture(root_);
         scene_->geometry.commit();
-        scene_->lights = Lights(std::move(emitters_), scene_->geometry);
+        build_camera();
+        scene_->lights = Lights(std::move(emitters_), scene_->geometry, std::move(states_));
         return scene_;
     }
 
   private:
     void build_camera() {
-        const auto sensors = root_.children_of("sensor");
-        if (sensors.empty()) throw input_error(root_.where, "the scene has no sensor");
-        const Properties& node = *sensors.front();
-        scene_->sensor_node = sensors.front();
-        if (const auto film = node.only_child("film"))
+        std::tie(scene_->sensor_node, scene_->sensor_shape) = chosen_sensor();
+        const Properties& node = *scene_->sensor_node;
+        expect_plugin(node);
+        if (const auto film = node.only_child("film")) {
             scene_->film = build_film(*film);
-        else
-            scene_->film.bin_edges_nm = FilmSettings::default_bins();
+        } else {
+            FilmSettings& settings = scene_->film;
+            std::tie(settings.width, settings.height) = default_film_size(node);
+            settings.crop_width = settings.width, settings.crop_height = settings.height;
+            settings.bin_edges_nm = FilmSettings::default_bins();
+        }
         if (const auto sampler = node.only_child("sampler")) {
             expect_plugin(*sampler);
             const std::int64_t count = sampler->integer("sample_count", 16);
@@ -56,8 +68,24 @@ class SceneBuilder {
             sampler->boolean("jitter", true);
             expect_known_properties(*sampler);
         }
-        build_sensor(node, scene_->film.width, scene_->film.height);
+        const Sensor sensor =
+            build_sensor(node, scene_->film.width, scene_->film.height, scene_->geometry, scene_->sensor_shape);
+        // A meter's mean is over uniform places: no filter reaches over the edges.
+        if (sensor.is_meter()) scene_->film.filter = PixelFilter();
+        scene_->camera_medium = medium_index(node.only_child("medium"));
         expect_known_properties(node);
+    }
+
+    std::pair<std::shared_ptr<const Properties>, int> chosen_sensor() const {
+        if (chosen_sensor_.empty()) return sensors_.front();
+        std::vector<std::string> names;
+        for (std::size_t i = 0; i < sensors_.size(); ++i) {
+            const std::string& id = sensors_[i].first->id;
+            if (chosen_sensor_ == id || chosen_sensor_ == std::to_string(i)) return sensors_[i];
+            names.push_back(id.empty() ? std::to_string(i) : id);
+        }
+        throw input_error(root_.where, fmt::format("the scene has no sensor \"{}\"", chosen_sensor_), "",
+                          did_you_mean(chosen_sensor_, names));
     }
 
     int bsdf_index(const std::shared_ptr<const Properties>& node) {
@@ -69,6 +97,23 @@ class SceneBuilder {
         Bsdf bsdf = build_bsdf(*node, bsdf_builder_);
         scene_->bsdfs.push_back(std::move(bsdf));
         return bsdf_of_node_[node.get()] = static_cast<int>(scene_->bsdfs.size()) - 1;
+    }
+
+    // Null: the vacuum.
+    int medium_index(const std::shared_ptr<const Properties>& node) {
+        if (!node) return vacuum;
+        const auto [known, is_new] = medium_of_node_.try_emplace(node.get(), static_cast<int>(scene_->media.size()));
+        if (is_new) scene_->media.push_back(build_medium(*node, {&resources_, &scene_->notes}));
+        return known->second;
+    }
+
+    // The child `side`, which must be a medium.
+    int side_medium(const Properties& shape, const char* side) {
+        const auto node = shape.named_child(side);
+        if (node && node->category != "medium")
+            throw input_error(node->where, fmt::format("the {} of a shape is a medium", side),
+                              fmt::format("this is a {}", node->category));
+        return medium_index(node);
     }
 
     int default_bsdf() {
@@ -83,10 +128,14 @@ class SceneBuilder {
         const int index = append_shape(node, resources_, scene_->geometry);
         const auto material = node.only_child("bsdf");
         scene_->geometry.shapes[index].bsdf = material ? bsdf_index(material) : default_bsdf();
+        scene_->geometry.shapes[index].interior = side_medium(node, "interior");
+        scene_->geometry.shapes[index].exterior = side_medium(node, "exterior");
         if (const auto emitter = node.only_child("emitter")) {
             scene_->geometry.shapes[index].emitter = static_cast<int>(emitters_.size());
+            states_.push_back(build_polarization(*emitter, node.transform("to_world")));
             emitters_.push_back(AreaEmitter{index, build_area_radiance(*emitter)});
         }
+        for (const auto& sensor : node.children_of("sensor")) sensors_.push_back({sensor, index});
         expect_known_properties(node);
     }
 
@@ -97,18 +146,23 @@ class SceneBuilder {
     }
 
     const Properties& root_;
+    const std::string& chosen_sensor_;
+    std::vector<std::pair<std::shared_ptr<const Properties>, int>> sensors_;  // with the shapes they stand in
     const SceneResources& resources_;
     std::shared_ptr<Scene> scene_ = std::make_shared<Scene>();
     BsdfBuilder bsdf_builder_;
     std::map<const Properties*, int> bsdf_of_node_;  // -1 while being built
+    std::map<const Properties*, int> medium_of_node_;
     int default_bsdf_ = -1;
     std::vector<Emitter> emitters_;
+    std::vector<EmitterPolarization> states_;  // of the emitters
 };
 
 }  // namespace
 
-std::shared_ptr<const Scene> build_scene(const Properties& root, const SceneResources& resources) {
-    return SceneBuilder(root, resources).build();
+std::shared_ptr<const Scene> build_scene(const Properties& root, const SceneResources& resources,
+                                         const std::string& sensor) {
+    return SceneBuilder(root, resources, sensor).build();
 }
 
 }  // namespace patina::render

@@ -1,48 +1,50 @@
 #include "patina/render/sensor.h"
 
-#include <fmt/format.h>
-
-#include "patina/core/constants.h"
-#include "patina/core/error.h"
-#include "patina/render/plugins.h"
 #include "patina/render/sampling.h"
+#include "patina/render/shape_area.h"
 
 namespace patina::render {
 
 namespace {
 
-// tan(half field of view) along x from `fov` and `fov_axis`, or `focal_length` on 36 x 24 mm film.
-double tangent_along_x(const Properties& node, double aspect) {
-    double fov_deg = 0;
-    std::string axis = "x";
-    if (node.has("focal_length")) {
-        if (node.has("fov")) throw input_error(node.location_of("fov"), "give \"fov\" or \"focal_length\", not both");
-        const std::string text = node.string("focal_length");
-        char* end = nullptr;
-        const double length_mm = std::strtod(text.c_str(), &end);
-        if (!(length_mm > 0) || (std::string_view(end) != "mm" && *end != '\0'))
-            throw input_error(node.location_of("focal_length"), "focal length out of range", "",
-                              "write for instance \"50mm\"");
-        fov_deg = degrees(2 * std::atan(0.5 * std::hypot(36.0, 24.0) / length_mm));
-        axis = "diagonal";
-    } else {
-        fov_deg = node.number("fov", degrees(2 * std::atan(0.5 * 36.0 / 50.0)));
-        axis = node.string("fov_axis", "x");
-    }
-    if (!(fov_deg > 0 && fov_deg < 180))
-        throw input_error(node.location_of("fov"), "field of view out of range",
-                          fmt::format("it is {} degrees", fov_deg), "keep it between 0 and 180");
-    const double t = std::tan(radians(0.5 * fov_deg));
-    if (axis == "smaller") axis = aspect > 1 ? "y" : "x";
-    if (axis == "larger") axis = aspect > 1 ? "x" : "y";
-    if (axis == "x") return t;
-    if (axis == "y") return t * aspect;
-    if (axis == "diagonal") return t * aspect / std::hypot(aspect, 1.0);
-    throw input_error(node.location_of("fov_axis"), fmt::format("unknown fov_axis \"{}\"", axis), "",
-                      did_you_mean(axis, {"x", "y", "diagonal", "smaller", "larger"}));
+// Where concentric_disk() took a point from.
+Vec2 from_concentric_disk(const Vec2& d) {
+    const float r = d.norm();
+    if (r == 0) return {0.5f, 0.5f};
+    float phi = std::atan2(d.y(), d.x());
+    if (phi < -0.25f * pi_f) phi += 2 * pi_f;
+    const auto arc = [&](float from) { return (phi - from) * 4 * inv_pi_f; };
+    Vec2 square;
+    if (phi < 0.25f * pi_f)
+        square = {r, r * arc(0)};
+    else if (phi < 0.75f * pi_f)
+        square = {-r * arc(0.5f * pi_f), r};
+    else if (phi < 1.25f * pi_f)
+        square = {-r, -r * arc(pi_f)};
+    else
+        square = {r * arc(1.5f * pi_f), -r};
+    return 0.5f * (square + Vec2::Ones());
 }
 
 }  // namespace
+
+void Sensor::rays(const FloatLanes& film_x, const FloatLanes& film_y, const FloatLanes& lens_x,
+                  const FloatLanes& lens_y, int count, CameraRay* results) const {
+    if (kind != Kind::perspective || aperture_radius > 0) {
+        for (int k = 0; k < count; ++k) results[k] = ray({film_x[k], film_y[k]}, {lens_x[k], lens_y[k]});
+        return;
+    }
+    // A pinhole: as ray() does it, on sixteen lanes.
+    const WideFloat x = (1 - 2 * film_x.load()) * tan_half_x, y = (1 - 2 * film_y.load()) * tan_half_y;
+    const auto to_world = [&](int row) { return rotation(row, 0) * x + rotation(row, 1) * y + rotation(row, 2); };
+    const WideVec3 direction = unit(WideVec3{to_world(0), to_world(1), to_world(2)});
+    const WideVec3 axis = unit(cross(direction, components(Vec3(rotation.col(1)))));
+    FloatLanes d[3], a[3];
+    d[0].store(direction.x), d[1].store(direction.y), d[2].store(direction.z);
+    a[0].store(axis.x), a[1].store(axis.y), a[2].store(axis.z);
+    for (int k = 0; k < count; ++k)
+        results[k] = {{origin, {d[0][k], d[1][k], d[2][k]}}, {a[0][k], a[1][k], a[2][k]}, Vec3::Zero()};
+}
 
 void Sensor::refocus(const Vec3& direction, const Vec2& lens, Ray& ray) const {
     const Vec2 on_lens = aperture_radius * concentric_disk(lens);
@@ -51,7 +53,93 @@ void Sensor::refocus(const Vec3& direction, const Vec2& lens, Ray& ray) const {
     ray.direction = (rotation * (focus_distance * direction - start)).normalized();
 }
 
+Sensor::CameraRay Sensor::other_ray(const Vec2& film, const Vec2& lens) const {
+    if (kind == Kind::irradiance || kind == Kind::radiosity) return surface_ray(film, lens);
+    if (kind == Kind::far_field || kind == Kind::distant) return far_ray(film, lens);
+    // One direction: of parallel rays over the film, or a single one.
+    CameraRay result;
+    result.ray.origin = origin;
+    if (kind == Kind::orthographic)
+        result.ray.origin += rotation * Vec3((1 - 2 * film.x()) * tan_half_x, (1 - 2 * film.y()) * tan_half_y, 0);
+    result.ray.direction = rotation.col(2);
+    result.stokes_axis = -rotation.col(0);
+    return result;
+}
+
+Sensor::CameraRay Sensor::surface_ray(const Vec2& film, const Vec2& lens) const {
+    // A point by area, a direction of its outside by the cosine.
+    CameraRay result;
+    Vec3 position;
+    point_of_shape(*geometry, geometry->shapes[shape], lens, position, result.normal);
+    const Vec3 outward = Frame(result.normal, rotation.col(0)).to_world(cosine_hemisphere(film));
+    const float reach = 4e-6f * std::max(position.cwiseAbs().maxCoeff(), 0.1f * geometry->radius());
+    result.ray.origin = position + result.normal * reach;
+    result.ray.direction = outward;
+    if (kind == Kind::radiosity) {
+        // Look at the point from just before it.
+        result.ray.origin = position + outward * (reach / std::max(outward.dot(result.normal), 1e-3f));
+        result.ray.direction = -outward;
+    }
+    result.stokes_axis = Frame(result.ray.direction, rotation.col(0)).s;
+    return result;
+}
+
+void Sensor::far_direction(const Vec2& film, Vec3& towards, Vec3& axis) const {
+    if (kind == Kind::distant) {
+        towards = -rotation.col(2);
+        axis = -rotation.col(0);
+        return;
+    }
+    const float cos = 1 - 2 * film.y(), sin = safe_sqrt(1 - cos * cos), phi = 2 * pi_f * film.x();
+    towards = rotation * Vec3(sin * std::cos(phi), sin * std::sin(phi), cos);
+    axis = rotation * Vec3(-std::sin(phi), std::cos(phi), 0);
+}
+
+Sensor::CameraRay Sensor::far_ray(const Vec2& film, const Vec2& lens) const {
+    CameraRay result;
+    Vec3 towards;
+    far_direction(film, towards, result.stokes_axis);
+    const float radius = geometry->radius();
+    Vec3 through = origin;
+    if (!targeted) {
+        const Vec2 on_disk = concentric_disk(lens) * radius;
+        through = geometry->centre() + Frame(towards).to_world({on_disk.x(), on_disk.y(), 0});
+    }
+    // Begin outside of everything.
+    const float out = 1.01f * radius + std::abs((geometry->centre() - through).dot(towards));
+    result.ray.origin = through + towards * out;
+    result.ray.direction = -towards;
+    return result;
+}
+
 bool Sensor::see(const Vec3& point, const Vec2& lens, Sight& sight) const {
+    switch (kind) {
+        case Kind::perspective:
+            return see_perspective(point, lens, sight);
+        case Kind::irradiance:
+            return see_from_surface(point, lens, sight);
+        case Kind::far_field:
+        case Kind::distant:
+            return !targeted && see_from_far(point, lens, sight);
+        case Kind::ray:
+        case Kind::radiosity:
+            return false;
+        case Kind::orthographic:
+            break;
+    }
+    const Vec3 local = rotation.transpose() * (point - origin);
+    if (!(local.z() > 0)) return false;
+    sight.film = {0.5f * (1 - local.x() / tan_half_x), 0.5f * (1 - local.y() / tan_half_y)};
+    if (sight.film.minCoeff() < -0.5f || sight.film.maxCoeff() > 1.5f) return false;
+    sight.direction = rotation.col(2);
+    sight.distance = local.z();
+    sight.from = point - sight.direction * sight.distance;
+    sight.importance = sqr(sight.distance) / film_area();
+    sight.stokes_axis = -rotation.col(0);
+    return true;
+}
+
+bool Sensor::see_perspective(const Vec3& point, const Vec2& lens, Sight& sight) const {
     Vec3 start = Vec3::Zero();
     if (aperture_radius > 0) start.head<2>() = aperture_radius * concentric_disk(lens);
     const Vec3 towards = rotation.transpose() * (point - origin) - start;
@@ -65,41 +153,55 @@ bool Sensor::see(const Vec3& point, const Vec2& lens, Sight& sight) const {
     sight.from = origin + rotation * start;
     sight.distance = towards.norm();
     sight.direction = rotation * (towards / sight.distance);
-    sight.importance = importance(sight.direction);
+    sight.importance = perspective_importance(sight.direction);
     sight.stokes_axis = sight.direction.cross(Vec3(rotation.col(1))).normalized();
     return true;
 }
 
-Sensor build_sensor(const Properties& node, int film_width, int film_height) {
-    expect_plugin(node);
-    Sensor sensor;
-    const double aspect = static_cast<double>(film_width) / film_height;
-    sensor.tan_half_x = static_cast<float>(tangent_along_x(node, aspect));
-    sensor.tan_half_y = static_cast<float>(sensor.tan_half_x / aspect);
+bool Sensor::see_from_surface(const Vec3& point, const Vec2& lens, Sight& sight) const {
+    Vec3 normal;
+    point_of_shape(*geometry, geometry->shapes[shape], lens, sight.from, normal);
+    const Vec3 d = point - sight.from;
+    sight.distance = d.norm();
+    if (!(sight.distance > 0)) return false;
+    sight.direction = d / sight.distance;
+    const Vec3 local = Frame(normal, rotation.col(0)).to_local(sight.direction);
+    if (!(local.z() > 0)) return false;
+    sight.film = from_concentric_disk(local.head<2>());
+    sight.importance = local.z() * inv_pi_f;
+    sight.stokes_axis = Frame(sight.direction, rotation.col(0)).s;
+    return true;
+}
 
-    // Take the camera's axes from the transform; scale along them has no meaning.
-    const Eigen::Matrix4d to_world = node.transform("to_world");
-    for (int axis = 0; axis < 3; ++axis) {
-        const Eigen::Vector3d column = to_world.block<3, 1>(0, axis);
-        if (!(column.norm() > 1e-12) || !column.allFinite())
-            throw input_error(node.location_of("to_world"), "the sensor's transform is degenerate");
-        sensor.rotation.col(axis) = column.normalized().cast<float>();
-    }
-    if (std::abs(sensor.rotation.determinant()) < 0.5f)
-        throw input_error(node.location_of("to_world"), "the sensor's axes are not perpendicular",
-                          "the up vector may be parallel to the view");
-    sensor.origin = to_world.block<3, 1>(0, 3).cast<float>();
+bool Sensor::see_from_far(const Vec3& point, const Vec2& lens, Sight& sight) const {
+    Vec3 towards;
+    far_direction(lens, towards, sight.stokes_axis);
+    sight.film = lens;
+    sight.direction = -towards;
+    sight.distance = 1.01f * geometry->radius() - (point - geometry->centre()).dot(towards);
+    sight.from = point + towards * sight.distance;
+    sight.importance = sqr(sight.distance) / film_area();
+    return sight.distance > 0;
+}
 
-    // Mitsuba clips at these planes; a path tracer has no need of them.
-    node.number("near_clip", 0.01);
-    node.number("far_clip", 1e4);
-    if (node.type == "thinlens") {
-        sensor.aperture_radius = static_cast<float>(node.number("aperture_radius"));
-        sensor.focus_distance = static_cast<float>(node.number("focus_distance"));
-        if (!(sensor.aperture_radius >= 0) || !(sensor.focus_distance > 0))
-            throw input_error(node.where, "aperture_radius must be >= 0 and focus_distance > 0");
+float Sensor::film_area() const {
+    return kind == Kind::orthographic ? 4 * tan_half_x * tan_half_y : pi_f * sqr(geometry->radius());
+}
+
+float Sensor::importance(const CameraRay& camera, float distance) const {
+    switch (kind) {
+        case Kind::perspective:
+            return perspective_importance(camera.ray.direction);
+        case Kind::irradiance:
+            return std::max(camera.normal.dot(camera.ray.direction), 0.0f) * inv_pi_f;
+        case Kind::ray:
+        case Kind::radiosity:
+            return 1;
+        default:
+            break;
     }
-    return sensor;
+    // Nothing is joined with what lies at infinity.
+    return std::isfinite(distance) ? sqr(distance) / film_area() : 1.0f;
 }
 
 }  // namespace patina::render

@@ -111,6 +111,32 @@ ScatteringElements evaluate(const ExpansionCoefficients& c, double cosine) {
     return f;
 }
 
+ScatteringMatrix evaluate(const ExpansionCoefficients& c, const math::Quadrature& cosines) {
+    const Eigen::Index count = cosines.size();
+    ScatteringMatrix matrix;
+    matrix.cosines = cosines;
+    for (ArrayXd* element : {&matrix.a1, &matrix.a2, &matrix.a3, &matrix.a4, &matrix.b1, &matrix.b2})
+        element->resize(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const ScatteringElements f = evaluate(c, cosines.nodes[i]);
+        matrix.a1[i] = f.a1, matrix.a2[i] = f.a2, matrix.a3[i] = f.a3, matrix.a4[i] = f.a4;
+        matrix.b1[i] = f.b1, matrix.b2[i] = f.b2;
+    }
+    return matrix;
+}
+
+void add(ExpansionCoefficients& sum, const ExpansionCoefficients& term, double weight) {
+    using Member = std::vector<double> ExpansionCoefficients::*;
+    for (const Member member :
+         {&ExpansionCoefficients::alpha1, &ExpansionCoefficients::alpha2, &ExpansionCoefficients::alpha3,
+          &ExpansionCoefficients::alpha4, &ExpansionCoefficients::beta1, &ExpansionCoefficients::beta2}) {
+        std::vector<double>& target = sum.*member;
+        const std::vector<double>& source = term.*member;
+        if (target.size() < source.size()) target.resize(source.size(), 0.0);
+        for (std::size_t l = 0; l < source.size(); ++l) target[l] += weight * source[l];
+    }
+}
+
 void truncate(ExpansionCoefficients& c, double tolerance) {
     int order = c.order();
     const auto matters = [&](int l) {

@@ -19,6 +19,12 @@ ExpansionCoefficients expand(const ScatteringMatrix& matrix, double tolerance);
 // F at a cosine of the scattering angle.
 ScatteringElements evaluate(const ExpansionCoefficients& coefficients, double cosine);
 
+// F at the nodes of a rule.
+ScatteringMatrix evaluate(const ExpansionCoefficients& coefficients, const math::Quadrature& cosines);
+
+// sum += weight * term, the shorter filled with zeros.
+void add(ExpansionCoefficients& sum, const ExpansionCoefficients& term, double weight);
+
 // Drops the orders beyond which every coefficient stays below `tolerance`; keeps at least order 2.
 void truncate(ExpansionCoefficients& coefficients, double tolerance);
 

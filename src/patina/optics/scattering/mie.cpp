@@ -28,19 +28,20 @@ int downward_start(double magnitude, int order) {
     return std::max(order, beyond_turning_point) + 15;
 }
 
-// psi_n(x) for n = 0 .. order (size order + 1).
-void riccati_bessel_psi(double x, int order, std::vector<double>& psi) {
+// psi_n(x) for n = 0 .. order (size order + 1); Number is complex in an absorbing host.
+template <class Number>
+void riccati_bessel_psi(Number x, int order, std::vector<Number>& psi) {
     // Recur the ratio psi_n / psi_{n-1} downward.
     psi.resize(order + 1);
-    double ratio = 0.0;
-    for (int n = downward_start(x, order); n >= 1; --n) {
-        ratio = 1.0 / ((2 * n + 1) / x - ratio);
+    Number ratio = 0.0;
+    for (int n = downward_start(std::abs(x), order); n >= 1; --n) {
+        ratio = 1.0 / ((2.0 * n + 1.0) / x - ratio);
         if (n <= order) psi[n] = ratio;
     }
 
     // Start the product at psi_0, or at psi_1 where psi_0 is near one of its zeros.
     psi[0] = std::sin(x);
-    if (x < 1.0 || std::abs(psi[0]) > 0.5) {
+    if (std::abs(x) < 1.0 || std::abs(psi[0]) > 0.5) {
         psi[1] *= psi[0];
     } else {
         psi[1] = psi[0] / x - std::cos(x);
@@ -82,26 +83,27 @@ inline Complex multipole(Complex numerator, Complex partner) {
     return times(numerator, reciprocal({numerator.real() + partner.imag(), numerator.imag() - partner.real()}));
 }
 
-// a_n and b_n (Bohren & Huffman 1983, eq. 4.88); Scalar is double for a transparent sphere.
-template <class Scalar>
-void fill_multipoles(double x, Scalar m, int order, std::vector<Complex>& a, std::vector<Complex>& b) {
-    std::vector<double> psi;
-    std::vector<Scalar> derivative;
+// a_n and b_n (Bohren & Huffman 1983, eq. 4.88) of a sphere in a host where it has the size parameter x; z = m x.
+// `Inside` is double for a transparent sphere, `Outside` for a transparent host.
+template <class Outside, class Inside, class Ratio>
+void fill_multipoles(Outside x, Inside z, Ratio m, int order, std::vector<Complex>& a, std::vector<Complex>& b) {
+    std::vector<Outside> psi;
+    std::vector<Inside> derivative;
     riccati_bessel_psi(x, order, psi);
-    logarithmic_derivative(m * x, order, derivative);
+    logarithmic_derivative(z, order, derivative);
 
     a.resize(order);
     b.resize(order);
-    const Scalar inverse_m = 1.0 / m;
-    double chi_previous = std::cos(x);
-    double chi = chi_previous / x + std::sin(x);
+    const Ratio inverse_m = 1.0 / m;
+    Outside chi_previous = std::cos(x);
+    Outside chi = chi_previous / x + std::sin(x);
     for (int n = 1; n <= order; ++n) {
-        const double n_over_x = n / x;
-        const Scalar electric = derivative[n] * inverse_m + n_over_x;
-        const Scalar magnetic = derivative[n] * m + n_over_x;
+        const Outside n_over_x = static_cast<double>(n) / x;
+        const Ratio electric = derivative[n] * inverse_m + n_over_x;
+        const Ratio magnetic = derivative[n] * m + n_over_x;
         a[n - 1] = multipole(electric * psi[n] - psi[n - 1], electric * chi - chi_previous);
         b[n - 1] = multipole(magnetic * psi[n] - psi[n - 1], magnetic * chi - chi_previous);
-        const double chi_next = (2 * n + 1) / x * chi - chi_previous;
+        const Outside chi_next = (2.0 * n + 1.0) / x * chi - chi_previous;
         chi_previous = chi;
         chi = chi_next;
     }
@@ -118,12 +120,40 @@ MieSphere::MieSphere(double size_parameter, Complex relative_index) : size_param
     PATINA_EXPECT(size_parameter * std::max(1.0, std::abs(relative_index)) <= 1e6);
     const int order = mie_order(size_parameter);
     if (relative_index.imag() == 0.0) {
-        fill_multipoles(size_parameter, relative_index.real(), order, a_, b_);
+        const double m = relative_index.real();
+        fill_multipoles(size_parameter, m * size_parameter, m, order, a_, b_);
     } else {
-        fill_multipoles(size_parameter, relative_index, order, a_, b_);
+        fill_multipoles(size_parameter, relative_index * size_parameter, relative_index, order, a_, b_);
     }
     sum_efficiencies();
     if (relative_index.imag() == 0.0) absorption_efficiency_ = 0.0;
+}
+
+MieSphere MieSphere::in_absorbing_host(Complex x, Complex m) {
+    PATINA_EXPECT(std::abs(x) >= 1e-20 && x.real() > 0.0 && x.imag() >= 0.0 && x.imag() <= max_host_absorption);
+    const Complex z = m * x;
+    PATINA_EXPECT(z.real() > 0.0 && std::max(std::abs(x), std::abs(z)) <= 1e6);
+    MieSphere sphere;
+    sphere.size_parameter_ = x.real();
+    fill_multipoles(x, Complex(z.real(), std::max(0.0, z.imag())), m, mie_order(std::abs(x)), sphere.a_, sphere.b_);
+    sphere.sum_efficiencies();
+
+    // Take the efficiencies from the coherent field and the far field: k is complex where the host absorbs.
+    double extinction = 0.0, scattering = 0.0, absorption = 0.0;
+    const Complex inverse_x2 = 1.0 / (x * x);
+    for (int n = sphere.order(); n >= 1; --n) {
+        const Complex a = sphere.a_[n - 1], b = sphere.b_[n - 1];
+        const double out = (2 * n + 1) * times(a + b, inverse_x2).real();
+        const double scattered = (2 * n + 1) * (std::norm(a) + std::norm(b)) / std::norm(x);
+        extinction += out;
+        scattering += scattered;
+        absorption += out - scattered;
+    }
+    sphere.extinction_efficiency_ = 2.0 * extinction;
+    sphere.scattering_efficiency_ = 2.0 * scattering;
+    sphere.absorption_efficiency_ = 2.0 * absorption;
+    sphere.backscattering_efficiency_ *= x.real() * x.real() / std::norm(x);
+    return sphere;
 }
 
 // The limit |m| -> infinity: a_n = psi_n'/xi_n', b_n = psi_n/xi_n.

@@ -26,6 +26,17 @@ class MieSphere {
     MieSphere(double size_parameter, std::complex<double> relative_index);
     static MieSphere perfect_conductor(double size_parameter);
 
+    // In an absorbing host, in the far field: x = k r with the complex wavenumber k = k' + i k'' = 2 pi m_host / lambda
+    // and m = m_particle / m_host. The scattered field is E = exp(i k R)/(-i k R) S(theta) E_0 with the incident field
+    // E_0 at the centre. Where N spheres a volume lie in the host, the coherent field's wavenumber is k + 2 pi i N
+    // S(0)/k^2 (Foldy), so that light is extinguished by 2 k'' + N C_ext with C_ext = 4 pi Re(S(0)/k^2) (Bohren & Gilra
+    // 1979, J. Colloid Interface Sci. 72, 215; Mishchenko 2008, Opt. Express 16, 2288), which counts the host that the
+    // sphere replaces: it is negative for a hole. C_sca = integral |S|^2 d omega / |k|^2, the decay exp(-2 k'' R)
+    // between spheres being the host's (Mishchenko & Yang 2018, J. Quant. Spectrosc. Radiat. Transf. 205, 241).
+    // Efficiencies are over pi r^2; absorption = extinction - scattering may be negative. k'' r <= max_host_absorption.
+    static MieSphere in_absorbing_host(std::complex<double> size_parameter, std::complex<double> relative_index);
+    static constexpr double max_host_absorption = 5.0;
+
     // Cross sections divided by pi r^2.
     double extinction_efficiency() const { return extinction_efficiency_; }
     double scattering_efficiency() const { return scattering_efficiency_; }

@@ -4,25 +4,11 @@
 #include <cmath>
 
 #include "patina/core/contract.h"
+#include "patina/optics/scattering/expansion.h"
 
 namespace patina::optics {
 
 namespace {
-
-using Member = std::vector<double> ExpansionCoefficients::*;
-constexpr Member members[] = {&ExpansionCoefficients::alpha1, &ExpansionCoefficients::alpha2,
-                              &ExpansionCoefficients::alpha3, &ExpansionCoefficients::alpha4,
-                              &ExpansionCoefficients::beta1,  &ExpansionCoefficients::beta2};
-
-// sum += weight * term, the shorter filled with zeros.
-void accumulate(ExpansionCoefficients& sum, const ExpansionCoefficients& term, double weight) {
-    for (Member member : members) {
-        std::vector<double>& target = sum.*member;
-        const std::vector<double>& source = term.*member;
-        if (target.size() < source.size()) target.resize(source.size(), 0.0);
-        for (std::size_t l = 0; l < source.size(); ++l) target[l] += weight * source[l];
-    }
-}
 
 ExpansionCoefficients isotropic() {
     return {{1, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
@@ -43,8 +29,8 @@ ScatteringMedium mix(std::span<const MixtureComponent> components) {
         return medium;
     }
     for (const MixtureComponent& c : components)
-        accumulate(medium.expansion, c.properties.expansion,
-                   c.number_density_per_um3 * c.properties.scattering_um2 / medium.scattering_per_um);
+        add(medium.expansion, c.properties.expansion,
+            c.number_density_per_um3 * c.properties.scattering_um2 / medium.scattering_per_um);
     return medium;
 }
 
@@ -67,8 +53,8 @@ ScatteringProperties average(const ScatteringProperties& first, double first_wei
         p.expansion = isotropic();
         return p;
     }
-    accumulate(p.expansion, first.expansion, first_weight * first.scattering_um2 / p.scattering_um2);
-    accumulate(p.expansion, second.expansion, second_weight * second.scattering_um2 / p.scattering_um2);
+    add(p.expansion, first.expansion, first_weight * first.scattering_um2 / p.scattering_um2);
+    add(p.expansion, second.expansion, second_weight * second.scattering_um2 / p.scattering_um2);
     return p;
 }
 

@@ -7,6 +7,7 @@
 
 #include "patina/core/constants.h"
 #include "patina/optics/scattering/expansion.h"
+#include "patina/optics/scattering/mie.h"
 #include "patina/optics/scattering/scattering_matrix.h"
 #include "patina/optics/scattering/structure_factor.h"
 
@@ -21,8 +22,8 @@ constexpr double max_size_parameter = 5000.0;
 // A few seconds of one processor.
 constexpr double max_operations = 4e10;
 
-void validate_problem(Complex particle_index, double host_index, double wavelength_nm, const ScatteringOptions& options,
-                      const SourceLocation& where) {
+void validate_problem(Complex particle_index, Complex host_index, double wavelength_nm,
+                      const ScatteringOptions& options, const SourceLocation& where) {
     const auto require = [&](bool legal, const std::string& problem, const char* why, const char* suggestion) {
         if (!legal) throw input_error(where, problem, why, suggestion);
     };
@@ -32,9 +33,13 @@ void validate_problem(Complex particle_index, double host_index, double waveleng
             "use a positive number");
     require(std::isfinite(k) && k >= 0.0 && k <= 100.0, fmt::format("the particle's extinction coefficient k is {}", k),
             "k >= 0 absorbs; a negative one would amplify light", "use 0 or more");
-    require(std::isfinite(host_index) && host_index >= 0.1 && host_index <= 100.0,
-            fmt::format("the host's refractive index is {}", host_index), "it lies between 0.1 and 100",
+    const double n_host = host_index.real(), k_host = host_index.imag();
+    require(std::isfinite(n_host) && n_host >= 0.1 && n_host <= 100.0,
+            fmt::format("the host's refractive index is {}", n_host), "it lies between 0.1 and 100",
             "use 1.5 for a binder");
+    require(std::isfinite(k_host) && k_host >= 0.0 && k_host <= 0.5 * n_host,
+            fmt::format("the host's extinction coefficient k is {}", k_host),
+            "0 to half of its refractive index: light has to travel in it", "use 0 for a clear binder");
     require(std::isfinite(wavelength_nm) && wavelength_nm >= 1.0 && wavelength_nm <= 1e7,
             fmt::format("the wavelength is {} nm", wavelength_nm), "it lies between 1 nm and 1 cm",
             "use 380 to 780 for light");
@@ -47,10 +52,12 @@ void validate_problem(Complex particle_index, double host_index, double waveleng
 
 // Largest difference between the averages of two sums, in the measure of ScatteringOptions::tolerance.
 double difference(const SphereSums& coarse, const SphereSums& fine, const math::Quadrature& cosines) {
-    const auto relative = [](double a, double b) { return b > 0.0 ? std::abs(a - b) / b : 0.0; };
+    // Against the extinction, which may vanish or be negative in an absorbing host, and then against the scattering.
+    const auto relative = [](double a, double b, double unit) { return unit > 0.0 ? std::abs(a - b) / unit : 0.0; };
     const double scale = fine.number / coarse.number;
-    double error = std::max(relative(scale * coarse.extinction_um2, fine.extinction_um2),
-                            relative(scale * coarse.scattering_um2, fine.scattering_um2));
+    double error = std::max(relative(scale * coarse.extinction_um2, fine.extinction_um2,
+                                     std::max(fine.extinction_um2, fine.scattering_um2)),
+                            relative(scale * coarse.scattering_um2, fine.scattering_um2, fine.scattering_um2));
 
     const Eigen::Index half = cosines.size() / 2;
     Eigen::ArrayXd w(2 * half);
@@ -72,7 +79,7 @@ struct SizeAverage {
 // Doubles the number of intervals until the average changes by less than the tolerance: the finer of two estimates is
 // far better than their difference where the rule converges exponentially, and about half as wrong where narrow
 // resonances are still missed.
-SizeAverage average_over_sizes(Complex relative_index, double wavenumber, const SizeDistribution& distribution,
+SizeAverage average_over_sizes(Complex relative_index, Complex wavenumber, const SizeDistribution& distribution,
                                const RadiusRange& range, const math::Quadrature& cosines,
                                const ScatteringOptions& options) {
     const auto sums_of = [&](const RadiusRule& rule) {
@@ -101,13 +108,15 @@ SizeAverage average_over_sizes(Complex relative_index, double wavenumber, const 
 
 }  // namespace
 
-ScatteringProperties scatter(Complex particle_index, double host_index, double wavelength_nm,
+ScatteringProperties scatter(Complex particle_index, Complex host_index, double wavelength_nm,
                              const SizeDistribution& distribution, const ScatteringOptions& options,
                              const SourceLocation& where) {
     validate_problem(particle_index, host_index, wavelength_nm, options, where);
     validate(distribution, where);
-    const Complex relative_index = particle_index / host_index;
-    const double wavenumber = 2.0 * pi * host_index / (1e-3 * wavelength_nm);
+    const Complex relative_index =
+        host_index.imag() == 0.0 ? particle_index / host_index.real() : particle_index / host_index;
+    const Complex complex_wavenumber = 2.0 * pi * host_index / (1e-3 * wavelength_nm);
+    const double wavenumber = complex_wavenumber.real();
 
     // Find the sizes that matter, and the angles that the largest of them needs.
     const RadiusRange range = relevant_range(distribution, wavenumber, options.tolerance);
@@ -120,8 +129,15 @@ ScatteringProperties scatter(Complex particle_index, double host_index, double w
         throw input_error(where, fmt::format("the size distribution reaches to radii of {:.3g} um", range.min_um),
                           "their circumference is below 1e-20 wavelengths",
                           "use a narrower or coarser size distribution");
+    if (complex_wavenumber.imag() * range.max_um > MieSphere::max_host_absorption)
+        throw input_error(
+            where, fmt::format("the size distribution reaches to radii of {:.3g} um", range.max_um),
+            fmt::format("the host absorbs all light on the way around them (k = {:g})", host_index.imag()),
+            fmt::format("use radii below {:.3g} um or a weaker absorption",
+                        MieSphere::max_host_absorption / complex_wavenumber.imag()));
     const math::Quadrature cosines = math::gauss_legendre(matrix_nodes(wavenumber * range.max_um));
-    const SizeAverage average = average_over_sizes(relative_index, wavenumber, distribution, range, cosines, options);
+    const SizeAverage average =
+        average_over_sizes(relative_index, complex_wavenumber, distribution, range, cosines, options);
 
     ScatteringProperties properties;
     const SphereSums& sums = average.sums;

@@ -12,7 +12,7 @@ namespace patina::optics {
 struct ScatteringProperties {
     double extinction_um2 = 0.0;
     double scattering_um2 = 0.0;
-    double absorption_um2 = 0.0;
+    double absorption_um2 = 0.0;       // negative where a particle absorbs less than the host it replaces
     double mean_volume_um3 = 0.0;      // a volume fraction f means f / mean_volume particles per um^3
     double effective_radius_um = 0.0;  // <r^3>/<r^2>
     ExpansionCoefficients expansion;   // order >= 2
@@ -38,11 +38,14 @@ struct ScatteringOptions {
     int max_radii = 16385;
 };
 
-// Homogeneous spheres of one material and a distribution of sizes in a transparent host. Indices at the given vacuum
-// wavelength. The size average refines a nested rule until it is stable. Cost: one to three microseconds a radius for
-// pigments. Throws Error(input) at `where` for indices, wavelengths, distributions or packing fractions that are not
-// physical, and for distributions that reach beyond the size parameter 5000, where expansions become useless.
-ScatteringProperties scatter(std::complex<double> particle_index, double host_index, double wavelength_nm,
+// Homogeneous spheres of one material and a distribution of sizes in a host of index n + i k. Indices at the given
+// vacuum wavelength. The size average refines a nested rule until it is stable. Cost: one to three microseconds a
+// radius for pigments. In an absorbing host the cross sections are those of MieSphere::in_absorbing_host: what the
+// particles add to the host's own 4 pi k / lambda, the host they replace already taken off. Throws Error(input) at
+// `where` for indices, wavelengths, distributions or packing fractions that are not physical, for distributions that
+// reach beyond the size parameter 5000, where expansions become useless, and for hosts that absorb within a particle's
+// radius (k'' r > MieSphere::max_host_absorption).
+ScatteringProperties scatter(std::complex<double> particle_index, std::complex<double> host_index, double wavelength_nm,
                              const SizeDistribution& distribution, const ScatteringOptions& options = {},
                              const SourceLocation& where = {});
 

@@ -109,7 +109,7 @@ int matrix_nodes(double size_parameter) {
     return 2 * static_cast<int>(size_parameter + 4.05 * std::cbrt(size_parameter) + 2.0) + 2;
 }
 
-SphereSums sum_spheres(Complex relative_index, double wavenumber_per_um, std::span<const double> radii_um,
+SphereSums sum_spheres(Complex relative_index, Complex wavenumber_per_um, std::span<const double> radii_um,
                        std::span<const double> weights, const math::Quadrature& cosines) {
     PATINA_EXPECT(cosines.size() % 2 == 0 && radii_um.size() == weights.size());
     SphereSums sums;
@@ -123,7 +123,9 @@ SphereSums sum_spheres(Complex relative_index, double wavenumber_per_um, std::sp
         const std::size_t end = std::min(begin + batch, radii_um.size());
         for (std::size_t i = begin; i < end; ++i) {
             const double r = radii_um[i], r2 = r * r, area = pi * r2;
-            const MieSphere& sphere = spheres.emplace_back(wavenumber_per_um * r, relative_index);
+            const MieSphere& sphere = spheres.emplace_back(
+                wavenumber_per_um.imag() > 0.0 ? MieSphere::in_absorbing_host(wavenumber_per_um * r, relative_index)
+                                               : MieSphere(wavenumber_per_um.real() * r, relative_index));
             sums.number += weights[i];
             sums.radius2_um2 += weights[i] * r2;
             sums.radius3_um3 += weights[i] * r2 * r;

@@ -39,9 +39,11 @@ struct SphereSums {
 int matrix_nodes(double size_parameter);
 
 // Adds up spheres of the radii (ascending is fastest) with number weights, in a host where the wavenumber is 2 pi
-// n_host / lambda. `cosines` is an even Gauss-Legendre rule on (-1, 1).
-SphereSums sum_spheres(std::complex<double> relative_index, double wavenumber_per_um, std::span<const double> radii_um,
-                       std::span<const double> weights, const math::Quadrature& cosines);
+// m_host / lambda, complex where it absorbs (MieSphere::in_absorbing_host). `cosines` is an even Gauss-Legendre rule on
+// (-1, 1).
+SphereSums sum_spheres(std::complex<double> relative_index, std::complex<double> wavenumber_per_um,
+                       std::span<const double> radii_um, std::span<const double> weights,
+                       const math::Quadrature& cosines);
 
 // F of the sums.
 ScatteringMatrix scattering_matrix(const SphereSums& sums, const math::Quadrature& cosines);

@@ -98,12 +98,17 @@ ExpansionCoefficients expand(const ScatteringTable& table, double tolerance, con
     std::vector<double> angles(nodes);
     for (int i = 0; i < nodes; ++i) angles[i] = std::acos(matrix.cosines.nodes[nodes - 1 - i]);
 
+    const double largest = *std::max_element(table.a1.begin(), table.a1.end());
     Eigen::ArrayXd* const elements[] = {&matrix.a1, &matrix.a2, &matrix.a3, &matrix.a4, &matrix.b1, &matrix.b2};
     for (std::size_t c = 0; c < 6; ++c) {
         std::vector<double> y = table.*columns[c];
+        for (double& value : y) value /= largest;
         if (c >= 4) y.front() = y.back() = 0.0;
         *elements[c] = interpolate(x, y, angles).reverse();
     }
+    if (!(matrix.a1 >= 0.0).all())
+        throw input_error(where, "a1 changes so fast that the spline through it becomes negative", "",
+                          "give more angles where it is steep");
     normalize(matrix);
     return expand(matrix, tolerance);
 }

@@ -22,6 +22,7 @@ void validate(const ScatteringTable& table, const SourceLocation& where = {});
 // Expansion coefficients of cubic splines through the columns against angle, with zero slope at 0 and 180 degrees,
 // where symmetry has it; truncated at `tolerance`. The splines' own error falls with the fourth power of the spacing of
 // the angles. At 0 and 180 degrees b1 and b2 are taken as zero.
+// Throws Error(input) like validate(), and where the spline through a1 would become negative.
 ExpansionCoefficients expand(const ScatteringTable& table, double tolerance, const SourceLocation& where = {});
 
 }  // namespace patina::optics

@@ -3,6 +3,10 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
+#include "patina/core/error.h"
+#include "patina/render/arriving_light.h"
 #include "patina/render/integrators/subpath.h"
 
 namespace patina::render {
@@ -20,6 +24,7 @@ struct JoinedPath {
     std::vector<Place> places;  // [0] is the lamp, the last the camera
     double direct_pdf = 0;      // of the lamp's point by light sampling from places[1]
     bool delta_light = false;
+    bool blind = false;  // the camera cannot be joined
 
     // Share of the strategy with `s` vertices from the lamp: power heuristic over all strategies that could have made
     // this path. Strategy t has the density prod_{i<t} from_light prod_{i>=t} from_camera, light sampling (t = 1) its
@@ -47,6 +52,7 @@ struct JoinedPath {
     bool possible(int t) const {
         if (t == 0) return !delta_light;
         if (places.size() == 2) return false;  // lamps are not joined with the camera
+        if (blind && t == static_cast<int>(places.size()) - 1) return false;
         return !places[t - 1].delta && !places[t].delta;
     }
 };
@@ -62,11 +68,12 @@ class Joiner {
         const PathVertex& v = camera_[t - 1];
         const int path_class = c_.problem.classes.path_class(v.events);
         const Lights& lights = c_.scene().lights;
-        const auto add = [&](Float4 radiance, float origin_pdf, float ray_pdf, float direct_pdf) {
+        const auto add = [&](int emitter, Float4 radiance, float origin_pdf, float ray_pdf, float direct_pdf) {
             if (largest(radiance) <= 0) return;
             double share = 1;
             if (weighted_ && t > 2) share = share_of(0, t, v, origin_pdf, ray_pdf, direct_pdf, false);
-            record_.add(v.throughput.of_unpolarized(radiance * static_cast<float>(share)), path_class);
+            record_.add(arriving(v.throughput, lights, emitter, radiance * static_cast<float>(share), v.to_previous),
+                        path_class);
         };
         if (v.kind == PathVertex::Kind::infinity) {
             for (int e : lights.environments()) {
@@ -81,14 +88,14 @@ class Joiner {
                     radiance = map.radiance(c_.w, direction);
                     map_pdf = map.pdf(direction);
                 }
-                add(radiance, origin_pdf, ray_pdf, lights.choice_probability(e) * map_pdf);
+                add(e, radiance, origin_pdf, ray_pdf, lights.choice_probability(e) * map_pdf);
             }
         } else if (v.emitter >= 0) {
             float origin_pdf = 0, ray_pdf = 0;
             c_.emission.surface_pdfs(v.emitter, v.to_previous.dot(v.point.geometric_normal), origin_pdf, ray_pdf);
             const float direct =
                 lights.surface_pdf(v.emitter, c_.scene().geometry, v.hit, v.point, camera_[t - 2].position());
-            add(lights.surface_radiance(v.emitter, v.point, v.to_previous, c_.w), origin_pdf, ray_pdf,
+            add(v.emitter, lights.surface_radiance(v.emitter, v.point, v.to_previous, c_.w), origin_pdf, ray_pdf,
                 static_cast<float>(per_area(direct, camera_[t - 2].position(), v)));
         }
     }
@@ -127,7 +134,8 @@ class Joiner {
         }
         const int events = c_.problem.classes.after(v.events, c_.event(v, v.to_previous));
         record_.add(
-            v.throughput.of_unpolarized(light.radiance * static_cast<float>(share / light.pdf), value.f, v.to_previous),
+            arriving(v.throughput, scene.lights, light.emitter, light.radiance * static_cast<float>(share / light.pdf),
+                     -light.direction, value.f, v.to_previous),
             c_.problem.classes.path_class(events));
     }
 
@@ -175,6 +183,7 @@ class Joiner {
             eye_.point.position = sight.from;
             eye_.point.geometric_normal = Vec3::Zero();
             eye_.forward = 1;
+            eye_importance_ = sight.importance;
             share = share_of(s, 1, light_[0], 0, 0, direct_pdf(), delta_lamp());
         }
         const int events = light_events(LightPathClassifier::eye, y, direction, s);
@@ -209,11 +218,7 @@ class Joiner {
 
   private:
     double direct_pdf() const { return direct_pdf_; }
-    bool delta_lamp() const {
-        const Emitter& e = c_.scene().lights.all()[light_[0].emitter];
-        return std::holds_alternative<PointEmitter>(e) || std::holds_alternative<SpotEmitter>(e) ||
-               std::holds_alternative<DirectionalEmitter>(e);
-    }
+    bool delta_lamp() const { return c_.scene().lights.is_delta(light_[0].emitter); }
 
     // Turns BSDF times the cosine towards the lamp into flux per solid angle that leaves (Veach 1997, eq. 5.19).
     static float leaving_factor(const PathVertex& y, const Vec3& direction) {
@@ -235,6 +240,7 @@ class Joiner {
         JoinedPath& path = path_;
         path.direct_pdf = direct;
         path.delta_light = delta_light;
+        path.blind = c_.problem.sensor.blind();
         path.places.clear();
         const auto vertex = [&](int i) -> const PathVertex& {
             if (i < s) return s == 1 ? lamp : light_[i];
@@ -273,8 +279,7 @@ class Joiner {
             const PathVertex &y = vertex(s - 1), &z = vertex(s);
             const Vec3 direction = (z.position() - y.position()).normalized();
             // The camera finds y from z, and then the vertex before y.
-            const double z_pdf =
-                t == 1 ? c_.problem.sensor.importance(-direction) : c_.pdf(z, z.to_previous, -direction);
+            const double z_pdf = t == 1 ? eye_importance_ : c_.pdf(z, z.to_previous, -direction);
             path.places[s - 1].from_camera = per_area(z_pdf, z.position(), y);
             path.places[s - 2].from_camera =
                 delta_light && s == 2 ? 0.0
@@ -295,11 +300,16 @@ class Joiner {
     JoinedPath path_;
     PathVertex lamp_, eye_;
     double direct_pdf_ = 0;
+    float eye_importance_ = 0;
 };
 
 }  // namespace
 
 void BidirectionalIntegrator::prepare(const TransportProblem& problem, const JobControl&) {
+    if (settings_.light_only && problem.sensor.blind())
+        throw input_error(problem.scene.sensor_node->where,
+                          fmt::format("no light path meets a {}", problem.scene.sensor_node->type),
+                          "it looks along single rays", "use path or bidirectional");
     emission_.emplace(problem.scene.lights, problem.scene.geometry);
 }
 
@@ -329,7 +339,7 @@ void BidirectionalIntegrator::trace(const TransportProblem& problem, const Senso
     }
     for (int s = 2; s <= lights && s <= depth; ++s) {
         sampler.seek(first_join_draw + (1u << 18) + 4 * static_cast<std::uint32_t>(s));
-        const Vec2 lens = problem.sensor.aperture_radius > 0 ? sampler.next2() : Vec2(0.5f, 0.5f);
+        const Vec2 lens = problem.sensor.uses_lens() ? sampler.next2() : Vec2(0.5f, 0.5f);
         joiner.join_camera(s, lens);
     }
 }

@@ -9,6 +9,7 @@
 #include "patina/render/integrators/path.h"
 #include "patina/render/integrators/radiosity.h"
 #include "patina/render/integrators/ray_tree.h"
+#include "patina/render/integrators/volumetric.h"
 #include "patina/render/plugins.h"
 
 namespace patina::render {
@@ -69,6 +70,8 @@ std::unique_ptr<Integrator> build_named(const Properties& node) {
     if (node.type == "appel" || node.type == "whitted" || node.type == "distribution") return ray_tree(node);
     if (node.type == "light" || node.type == "bidirectional") return bidirectional(node);
     if (node.type == "radiosity") return radiosity(node);
+    if (node.type == "volumetric" || node.type == "volpath" || node.type == "volpathmis")
+        return std::make_unique<VolumetricIntegrator>(common_settings<VolumetricIntegrator::Settings>(node, false));
     return std::make_unique<PathIntegrator>(common_settings<PathIntegrator::Settings>(node, false));
 }
 

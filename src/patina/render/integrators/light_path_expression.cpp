@@ -19,7 +19,7 @@ constexpr std::size_t most_states = 20'000;
 using Positions = std::set<int>;
 
 struct Position {
-    char symbol;  // L, E, D, G, S or .
+    char symbol;  // L, E, D, G, S, V or .
     int column;
     Positions followers;
 };
@@ -39,7 +39,7 @@ class Parser {
         if (text_.size() > longest_expression)
             fail(longest_expression, fmt::format("longer than {} characters", longest_expression));
         Part whole = alternatives();
-        if (at_ < text_.size()) fail(at_, text_[at_] == ')' ? "\")\" closes nothing" : unexpected());
+        if (at_ < text_.size()) fail(at_, fmt::format("\"{}\" closes nothing", text_[at_]));
         return whole;
     }
     [[noreturn]] void fail(std::size_t index, const std::string& problem) const {
@@ -53,7 +53,7 @@ class Parser {
         return at_ < text_.size() ? text_[at_] : '\0';
     }
     std::string unexpected() const {
-        return fmt::format("\"{}\" is no symbol; write L, E, D, G, S, . ( ) | * + ?", text_[at_]);
+        return fmt::format("\"{}\" is no symbol; write L, E, D, G, S, V, . ( ) [ ] | * + ?", text_[at_]);
     }
 
     Part alternatives() {
@@ -70,7 +70,7 @@ class Parser {
 
     Part sequence() {
         Part all = repeated();
-        while (peek() != '\0' && peek() != '|' && peek() != ')') {
+        while (peek() != '\0' && peek() != '|' && peek() != ')' && peek() != ']') {
             const Part next = repeated();
             link(all.last, next.first);
             if (all.nullable) all.first.insert(next.first.begin(), next.first.end());
@@ -95,17 +95,17 @@ class Parser {
 
     Part single() {
         const char c = peek();
-        if (c == '(') {
+        if (c == '(' || c == '[') {
             const std::size_t opening = at_++;
             Part inner = alternatives();
-            if (peek() != ')') fail(opening, "\"(\" is not closed");
+            if (peek() != (c == '(' ? ')' : ']')) fail(opening, fmt::format("\"{}\" is not closed", c));
             ++at_;
             return inner;
         }
         if (c == '\0') fail(at_, "a symbol is missing at the end");
-        if (c == '|' || c == ')' || c == '*' || c == '+' || c == '?')
+        if (c == '|' || c == ')' || c == ']' || c == '*' || c == '+' || c == '?')
             fail(at_, fmt::format("a symbol is missing before \"{}\"", c));
-        if (std::string_view("LEDGS.").find(c) == std::string_view::npos) fail(at_, unexpected());
+        if (std::string_view("LEDGSV.").find(c) == std::string_view::npos) fail(at_, unexpected());
         const int position = static_cast<int>(positions_.size());
         positions_.push_back({c, static_cast<int>(at_++), {}});
         return {false, {position}, {position}};
@@ -141,7 +141,7 @@ Positions append_expression(const LightPathExpression& expression, std::vector<P
     for (int p = begin; p < static_cast<int>(positions.size()); ++p) {
         const char symbol = positions[p].symbol;
         if (whole.first.contains(p) != (symbol == 'E') || whole.last.contains(p) != (symbol == 'L'))
-            parser.fail(column(p), "a path goes from L to E, or from E to L, with D, G, S and . between");
+            parser.fail(column(p), "a path goes from L to E, or from E to L, with D, G, S, V and . between");
         if (symbol == 'L' && !positions[p].followers.empty())
             parser.fail(column(p), "L can stand at an end of the path only");
         for (int follower : positions[p].followers)
@@ -161,6 +161,8 @@ bool reads(char symbol, ScatteringEvent event) {
             return event == ScatteringEvent::glossy;
         case 'S':
             return event == ScatteringEvent::specular;
+        case 'V':
+            return event == ScatteringEvent::volume;
         default:
             return false;
     }
@@ -190,7 +192,7 @@ LightPathClassifier::LightPathClassifier(std::span<const LightPathExpression> ex
                 if (positions[follower].symbol == 'L') accepted[expression_of[follower]] = true;
         state.path_class = class_of.try_emplace(accepted, static_cast<int>(class_of.size())).first->second;
         if (state.path_class == static_cast<int>(members_.size())) members_.push_back(accepted);
-        for (int event = 0; event < 3; ++event) {
+        for (int event = 0; event < scattering_events; ++event) {
             Positions next;
             for (int p : current)
                 for (int follower : positions[p].followers)

@@ -6,6 +6,7 @@
 
 #include "patina/core/error.h"
 #include "patina/core/parallel.h"
+#include "patina/render/arriving_light.h"
 
 namespace patina::render {
 
@@ -66,7 +67,7 @@ RadiosityIntegrator::Row RadiosityIntegrator::cast_rays(const TransportProblem& 
             if (other >= 0) row.form_factors[other] += share;
         } else {
             for (int n = 0; n < nodes; ++n)
-                scene.lights.for_each_environment(ray.direction, at[n], [&](Float4 radiance, float) {
+                scene.lights.for_each_environment(ray.direction, at[n], [&](Float4 radiance, float, int) {
                     row.irradiance[n] += share * pi_f * radiance[0];
                 });
         }
@@ -177,6 +178,10 @@ void RadiosityIntegrator::trace(const TransportProblem& problem, const Sensor::C
                                 Sampler& sampler, PathRecord& record) const {
     const Scene& scene = problem.scene;
     const auto add = [&](Float4 radiance) { record.add(make_stokes(radiance, splat(0), splat(0), splat(0)), 0); };
+    const auto show = [&](int emitter, Float4 radiance) {
+        const Throughput camera_ray(camera.stokes_axis);
+        record.add(arriving(camera_ray, scene.lights, emitter, radiance, -camera.ray.direction), 0);
+    };
     sampler.seek(first_draw);
 
     // What the camera sees directly.
@@ -184,13 +189,14 @@ void RadiosityIntegrator::trace(const TransportProblem& problem, const Sensor::C
     record.hit = scene.geometry.intersect(camera.ray, hit);
     if (!record.hit) {
         if (!settings_.hide_emitters)
-            scene.lights.for_each_environment(camera.ray.direction, w, [&](Float4 radiance, float) { add(radiance); });
+            scene.lights.for_each_environment(camera.ray.direction, w,
+                                              [&](Float4 radiance, float, int emitter) { show(emitter, radiance); });
         return;
     }
     const SurfacePoint point = scene.geometry.surface(camera.ray, hit);
     const Shape& shape = scene.geometry.shapes[hit.shape];
     if (shape.emitter >= 0 && !settings_.hide_emitters)
-        add(scene.lights.surface_radiance(shape.emitter, point, -camera.ray.direction, w));
+        show(shape.emitter, scene.lights.surface_radiance(shape.emitter, point, -camera.ray.direction, w));
     if (!settings_.gather) {
         const int patch = patches_->find(hit, point, camera.ray.direction);
         if (patch >= 0) add(reflected(patch, w));
@@ -222,7 +228,7 @@ void RadiosityIntegrator::trace(const TransportProblem& problem, const Sensor::C
     const Float4 weight = sample.weight.intensity();
     if (!scene.geometry.intersect(ray, hit)) {
         scene.lights.for_each_environment(
-            direction, w, [&](Float4 radiance, float light_pdf) { add(weight * radiance * share(light_pdf)); });
+            direction, w, [&](Float4 radiance, float light_pdf, int) { add(weight * radiance * share(light_pdf)); });
         return;
     }
     const SurfacePoint seen = scene.geometry.surface(ray, hit);

@@ -1,5 +1,6 @@
 #include "patina/render/integrators/ray_tree.h"
 
+#include "patina/render/arriving_light.h"
 #include "patina/render/mueller_packet.h"
 #include "patina/render/scene.h"
 
@@ -63,8 +64,10 @@ class Tree {
     void add_environment(const Branch& b) {
         // The surface that sent the ray looked for light with as many samples as its own depth has.
         const int samples = b.depth == 1 ? settings_.light_samples : 1;
-        scene_.lights.for_each_environment(b.ray.direction, w_, [&](Float4 radiance, float light_pdf) {
-            add(b.throughput.of_unpolarized(radiance * share(b, samples * light_pdf)), b.events);
+        scene_.lights.for_each_environment(b.ray.direction, w_, [&](Float4 radiance, float light_pdf, int emitter) {
+            add(arriving(b.throughput, scene_.lights, emitter, radiance * share(b, samples * light_pdf),
+                         -b.ray.direction),
+                b.events);
         });
     }
     void add_emission(const Branch& b, const Hit& hit, const SurfacePoint& point) {
@@ -75,12 +78,13 @@ class Tree {
         const int samples = b.depth == 1 ? settings_.light_samples : 1;
         const float light_pdf =
             b.density > 0 ? scene_.lights.surface_pdf(emitter, scene_.geometry, hit, point, b.from) : 0.0f;
-        add(b.throughput.of_unpolarized(radiance * share(b, samples * light_pdf)), b.events);
+        add(arriving(b.throughput, scene_.lights, emitter, radiance * share(b, samples * light_pdf), -b.ray.direction),
+            b.events);
     }
 
     void add_direct_light(const Branch& b, const SurfacePoint& point) {
         ShadingPoint shading = shading_point(point);
-        shading.unpolarized_light = true;
+        shading.unpolarized_light = !scene_.lights.any_polarized();
         if (!scene_.lights.any_sampled() || bsdf_is_delta(bsdf(point), shading)) return;
         const Vec3 outgoing = point.frame.to_local(-b.ray.direction);
         const int events = classes_.after(b.events, continuous_event(bsdf(point), shading, outgoing));
@@ -95,7 +99,8 @@ class Tree {
             if (scene_.geometry.occluded(shadow)) continue;
             const float part = light.delta ? 1.0f : power_heuristic(samples * light.pdf, lobe_samples(b) * value.pdf);
             axes_to_world(point, value.f);
-            add(b.throughput.of_unpolarized(light.radiance * (part / (samples * light.pdf)), value.f, -b.ray.direction),
+            add(arriving(b.throughput, scene_.lights, light.emitter, light.radiance * (part / (samples * light.pdf)),
+                         -light.direction, value.f, -b.ray.direction),
                 events);
         }
     }

@@ -68,7 +68,7 @@ void trace_camera_path(const SubpathContext& context, const Sensor::CameraRay& c
     int events = LightPathClassifier::eye;
     bool hero_only = false;
     float eta = 1;
-    double pdf = context.problem.sensor.importance(ray.direction);
+    double pdf = 0;
     for (int depth = 0; static_cast<int>(path.size()) < most_vertices; ++depth) {
         sampler.seek(first_camera_draw + draws_per_vertex * static_cast<std::uint32_t>(depth));
 
@@ -76,6 +76,7 @@ void trace_camera_path(const SubpathContext& context, const Sensor::CameraRay& c
         PathVertex v;
         const bool found = meet(context.scene(), ray, v);
         if (!found) v = infinite_vertex(ray.direction);
+        if (depth == 0) pdf = context.problem.sensor.importance(camera, found ? v.hit.t : INFINITY);
         v.forward = per_area(pdf, path.back().position(), v);
         v.throughput = throughput;
         v.events = events;
@@ -133,7 +134,7 @@ void trace_light_path(const SubpathContext& context, int most_vertices, Sampler&
     path.push_back(lamp);
 
     Ray ray{emitted.position, emitted.direction, INFINITY};
-    LightBeam beam = LightBeam::unpolarized(emitted.power, emitted.direction);
+    LightBeam beam = context.scene().lights.beam(emitted.emitter, emitted.power, emitted.direction);
     const float emitted_power = largest(emitted.power);
     bool hero_only = false;
     double pdf = emitted.ray_pdf;
@@ -165,7 +166,7 @@ void trace_light_path(const SubpathContext& context, int most_vertices, Sampler&
             axes_to_world(at.point, m);
             // Flux is not scaled by the index squared as radiance is; shading normals scale it (Veach 1997, eq. 5.19).
             const float shading = std::abs(local_incident.z()) * cos_out / (cos_in * std::abs(sample.incident.z()));
-            m.scale(splat(sqr(sample.eta) * shading));
+            m.scale(splat(sqr(sample.eta) * shading * sample.adjoint));
             beam.scatter(m, outgoing);
         } else {
             BsdfValue value;

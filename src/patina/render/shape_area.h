@@ -1,0 +1,11 @@
+#pragma once
+// Points uniform over a shape's area, for light and meters that begin on it.
+
+#include "patina/render/geometry.h"
+
+namespace patina::render {
+
+// u in the unit square; `normal` is that of the shape's outside.
+void point_of_shape(const Geometry& geometry, const Shape& shape, const Vec2& u, Vec3& position, Vec3& normal);
+
+}  // namespace patina::render
