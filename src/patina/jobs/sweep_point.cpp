@@ -10,7 +10,7 @@
 #include "patina/coating/paint_metrics_colour.h"
 #include "patina/core/error.h"
 #include "patina/core/files.h"
-#include "patina/core/hash.h"
+#include "patina/core/fingerprint.h"
 #include "patina/version.h"
 
 namespace patina::jobs {
@@ -172,7 +172,9 @@ std::string sweep_point_key(const coating::Recipe& recipe, const coating::PaintO
                                         fmt::join(stack.wavelengths_nm, " "), stack.tolerance, stack.streams,
                                         stack.solver, options.white_reflectance, options.wanted_contrast_ratio,
                                         Constants(recipe, stack.wavelengths_nm).text());
-    return fmt::format("{:016x}", fnv1a_64(all));
+    Fingerprint fingerprint;
+    fingerprint.add(all);
+    return fingerprint.hex();
 }
 
 void write_sweep_point(const std::filesystem::path& path, const std::string& key,
