@@ -55,7 +55,7 @@ TEST(Transport, IsReciprocal) {
                 for (auto& of : mean) of[r] += block[r] / static_cast<double>(blocks.size());
         return mean;
     };
-    const Measurements by_path = whole(measure(*there, "path", 1024));
+    const Measurements by_path = whole(measure(*there, "path", 1200));
     expect_agreement(by_path, whole(measure(*back, "path", 1024, "", 300)), "path there, path back");
     expect_agreement(by_path, whole(measure(*back, "bidirectional", 128, "", 300)), "path there, bidirectional back");
     EXPECT_LT(relative_error(by_path), 0.02);
