@@ -146,6 +146,9 @@ class Gallery:
                              caption, 0.6) for name, caption, share in INTEGRATORS]
         figures.append(self.pair(self.render("media", scenes.FOG_ROOM, "--integrator", "volumetric", spp=2), "volumetric",
                                  "two balls of fog: Rayleigh's phase matrix, and Henyey and Greenstein's", 0.6))
+        figures.append(self.pair(self.render("translucent", scenes.TRANSLUCENT_ROOM, "--integrator", "volumetric", spp=2),
+                                 "volumetric", "a cloud of titania grains (Mie); marble by the dipole's diffusion",
+                                 0.6))
         diffuse = []
         for i, (name, caption, share, options) in enumerate(DIFFUSE_INTEGRATORS):
             extra = "".join(scenes.value("boolean", key, text) for key, text in options.items())

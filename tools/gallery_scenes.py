@@ -28,6 +28,9 @@ MODELS = [
           value("float", "weight_1", 0.25), value("vector", "lobe_2", "1, 1, 1"), value("float", "exponent_2", 8),
           value("float", "weight_2", 0.1))),
     ("plastic", "smooth plastic", bsdf("plastic", RED)),
+    ("dipole", "translucent matter by diffusion, here from where it entered",
+     bsdf("dipole", '<spectrum name="sigma_a" value="400:0.06, 500:0.04, 600:0.02, 700:0.02"/>',
+          value("float", "sigma_s", 25))),
     ("roughplastic", "rough plastic, alpha 0.2", bsdf("roughplastic", RED, value("float", "alpha", 0.2))),
     ("pplastic", "polarized plastic (Baek 2018), alpha 0.2", bsdf("pplastic", RED, value("float", "alpha", 0.2))),
     ("dielectric", "glass", bsdf("dielectric")),
@@ -113,6 +116,16 @@ FOG_ROOM = room(
          'value="2.5"/><float name="albedo" value="0.95"/><phase type="rayleigh"/></medium>'),
     ball("0.5, 0.4, 0.1", 0.4, bsdf("null") + '<medium name="interior" type="homogeneous"><float name="sigma_t" value="6"/>'
          '<rgb name="albedo" value="0.95, 0.8, 0.4"/><phase type="hg"><float name="g" value="0.6"/></phase></medium>'))
+
+# A cloud of titania of 30 nm, bluish and polarizing; and a ball that scatters as marble does, by diffusion.
+TRANSLUCENT_ROOM = room(
+    ball("-0.45, 0.5, -0.1", 0.45, bsdf("null") + '<medium name="interior" type="homogeneous">'
+         '<spectrum name="sigma_t" value="400:12, 500:4.9, 600:2.4, 700:1.3"/>'
+         '<float name="albedo" value="1"/><phase type="mie"><string name="material" value="TiO2-rutile"/>'
+         '<string name="binder" value="acrylic"/><float name="radius_um" value="0.03"/></phase></medium>'),
+    ball("0.5, 0.4, 0.1", 0.4, bsdf("dipole", '<spectrum name="sigma_a" value="400:0.06, 500:0.04, 600:0.02, 700:0.02"/>',
+                                    value("float", "sigma_s", 25)))
+).replace('name="max_depth" value="9"', 'name="max_depth" value="-1"')
 
 # Glass, plastic and metal on a dark table under a soft lamp, and a polarizer and a quarter-wave plate standing on it.
 STILL_LIFE = """<scene version="3.0.0">
