@@ -97,8 +97,8 @@ TEST(Volumetric, WavelengthsDoNotDisturbEachOther) {
         const double sigma_t = 8 * (25 * b + 12.5) / 400;
         const auto alone =
             picture({volumetric(), needle(512), all_around(0.2), lamp(), ball(uniform("sigma_t", sigma_t))}, one_bin);
-        // 16384 paths with a quarter of a wavelength each in the bin, and 4096: 1.5 %; the bin's width 0.3 %.
-        EXPECT_NEAR(mean(together, b)[0] / mean(alone, 0)[0], 1, 0.05) << sigma_t;
+        // 131072 paths with a quarter of a wavelength each in the bin, and 32768: 0.6 %; the bin's width 0.3 %.
+        EXPECT_NEAR(mean(together, b)[0] / mean(alone, 0)[0], 1, 0.02) << sigma_t;
     }
 }
 
