@@ -104,5 +104,34 @@ TEST_P(CertifiedError, BoundsTheErrorBetweenTheNodes) {
 INSTANTIATE_TEST_SUITE_P(RandomRecipes, CertifiedError, testing::Range(1, 14));
 INSTANTIATE_TEST_SUITE_P(MoreRandomRecipes, CertifiedError, testing::Range(15, 25));
 
+// Between wavelengths that were chosen, the table is as good as promised: rutile's dispersion and hematite's edge, at
+// wavelengths drawn anew, against solutions at exactly these.
+TEST(CertifiedError, BoundsTheErrorBetweenChosenWavelengths) {
+    for (const char* pigment : {"TiO2-rutile", "Fe2O3"}) {
+        const coating::Recipe recipe = coating::parse_recipe(
+            fmt::format("extrapolation = \"hold\"\n[interface]\ntype = \"smooth\"\n[[layers]]\nthickness_um = 20\n"
+                        "binder = {{ n = 1.5 }}\n[[layers.pigments]]\nmaterial = \"{}\"\nvolume_fraction = 0.1\n"
+                        "size = {{ distribution = \"lognormal\", median_radius_um = 0.1, sigma_g = 1.3 }}\n",
+                        pigment),
+            "paint.toml", ".");
+        const jobs::SolveResult result =
+            jobs::solve(recipe, {.wavelengths_nm = {}, .automatic_range_nm = {{400.0, 700.0}}, .tolerance = tolerance});
+        ASSERT_TRUE(result.plan.wavelength_error);
+        EXPECT_LE(*result.plan.wavelength_error, tolerance);
+        EXPECT_LT(result.table.wavelengths_nm.size(), 40u) << pigment;
+
+        std::mt19937_64 random(7);
+        for (int draw = 0; draw < 12; ++draw) {
+            const double wavelength_nm = std::uniform_real_distribution<double>(400.0, 700.0)(random);
+            // The same streams: what is left is what lies between wavelengths, and scattering's own tolerance.
+            const jobs::SolveResult exact = jobs::solve(
+                recipe, {.wavelengths_nm = {wavelength_nm}, .streams = result.plan.streams, .tolerance = tolerance});
+            const TrueError error = true_error(result.table, exact.table, wavelength_nm, draw);
+            EXPECT_LE(error.largest, (*result.plan.wavelength_error + 2e-4) * error.scale)
+                << pigment << " " << wavelength_nm;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace patina

@@ -168,27 +168,34 @@ Mueller MuellerTable::evaluate(double wavelength_nm, double mu_o, double mu_i, d
     return (1 - interval.upper_weight) * at(interval.lower) + interval.upper_weight * at(interval.upper);
 }
 
+int MuellerTable::orders(double wavelength_nm) const {
+    const LinearInterval interval = linear_interval(wavelengths_nm, wavelength_nm);
+    return static_cast<int>(std::max(body[interval.lower].modes.size(), body[interval.upper].modes.size()));
+}
+
+Eigen::MatrixXd MuellerTable::mode(double wavelength_nm, int m, std::span<const double> mu_o,
+                                   std::span<const double> mu_i) const {
+    const LinearInterval interval = linear_interval(wavelengths_nm, wavelength_nm);
+    const BarycentricInterpolation interpolation(mu);
+    return interpolation_matrix(interpolation, mu, mu_o, m) *
+           mode_at(body, interval, static_cast<std::size_t>(m), static_cast<Eigen::Index>(4 * mu.size())) *
+           interpolation_matrix(interpolation, mu, mu_i, m).transpose();
+}
+
 MuellerGrid MuellerTable::evaluate_grid(double wavelength_nm, std::span<const double> mu_o,
                                         std::span<const double> mu_i, std::span<const double> phi) const {
     const auto inside = [](double x) { return x >= 0 && x <= 1; };
     PATINA_EXPECT(std::ranges::all_of(mu_o, inside) && std::ranges::all_of(mu_i, inside));
-    const LinearInterval interval = linear_interval(wavelengths_nm, wavelength_nm);
-    const BarycentricInterpolation interpolation(mu);
-    const std::size_t orders = std::max(body[interval.lower].modes.size(), body[interval.upper].modes.size());
-
+    const int count = orders(wavelength_nm);
     MuellerGrid grid{static_cast<int>(mu_o.size()), static_cast<int>(mu_i.size()), static_cast<int>(phi.size()), {}};
     grid.values.assign(mu_o.size() * mu_i.size() * phi.size(), Mueller::Zero());
-    for (std::size_t m = 0; m < orders; ++m) {
-        // Carry the mode to the directions asked for.
-        const int order = static_cast<int>(m);
-        const Eigen::MatrixXd values = interpolation_matrix(interpolation, mu, mu_o, order) *
-                                       mode_at(body, interval, m, static_cast<Eigen::Index>(4 * mu.size())) *
-                                       interpolation_matrix(interpolation, mu, mu_i, order).transpose();
+    for (int m = 0; m < count; ++m) {
+        const Eigen::MatrixXd values = mode(wavelength_nm, m, mu_o, mu_i);
 
         // The azimuth dependence of the 16 elements, one matrix an azimuth.
         std::vector<Mueller> azimuth(phi.size());
         for (std::size_t p = 0; p < phi.size(); ++p) {
-            const double multiplicity = m == 0 ? 1.0 : 2.0, c = std::cos(order * phi[p]), s = std::sin(order * phi[p]);
+            const double multiplicity = m == 0 ? 1.0 : 2.0, c = std::cos(m * phi[p]), s = std::sin(m * phi[p]);
             for (int row = 0; row < 4; ++row)
                 for (int column = 0; column < 4; ++column)
                     azimuth[p](row, column) = multiplicity * azimuth_factor(row, column, c, s);

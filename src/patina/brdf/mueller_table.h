@@ -70,6 +70,11 @@ class MuellerTable {
     MuellerGrid evaluate_grid(double wavelength_nm, std::span<const double> mu_o, std::span<const double> mu_i,
                               std::span<const double> phi) const;
 
+    // Order m of the body BRDF between the given cosines, (4 x mu_o.size()) x (4 x mu_i.size()); zero beyond the last.
+    Eigen::MatrixXd mode(double wavelength_nm, int m, std::span<const double> mu_o, std::span<const double> mu_i) const;
+    // How many orders the body BRDF has at a wavelength.
+    int orders(double wavelength_nm) const;
+
     // The delta part (surface + coherent) along the mirror direction; cubic in the angle of incidence, whose steep end
     // at grazing a straight line between whole degrees would miss by 1e-3.
     optics::Mueller specular(double wavelength_nm, double mu_i) const;

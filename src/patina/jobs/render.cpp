@@ -105,12 +105,12 @@ namespace {
 // Everything that decides the picture: the scene with the files it names, solved recipes, options, the program.
 class PictureIdentity {
   public:
-    explicit PictureIdentity(const Properties& tree) { scene_.add(tree); }
+    explicit PictureIdentity(const Properties& tree) { add_to(scene_, tree); }
     // Solved recipes name files of their own.
     void watch(render::SceneResources& resources) {
         resources.load_brdf_table = [this, load = resources.load_brdf_table](const std::string& path) {
             const auto table = load(path);
-            if (fs::path(path).extension() == ".toml") scene_.add(*table);
+            if (fs::path(path).extension() == ".toml") add_to(scene_, *table);
             return table;
         };
     }

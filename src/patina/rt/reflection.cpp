@@ -38,7 +38,7 @@ GroupSolution solve_group(const StackMedia& media, const LayerMethod& method, in
     Eigen::MatrixXd below = media.base_reflection(m, components);
     for (int k = count - 1; k >= 0; --k) {
         const Layer& layer = problem.layers[k];
-        if (layer.optical_thickness > 0.0) {
+        if (layer.optical_thickness > 0.0 && (media.scatters(k, m) || below.size() > 0)) {
             // Over a black base the transmitted light is lost; it is asked for at m = 0 only, to check the energy
             // balance.
             LayerOperators<double> operators;
@@ -51,7 +51,7 @@ GroupSolution solve_group(const StackMedia& media, const LayerMethod& method, in
             }
             below = below.size() > 0 ? add_layer(operators, below).reflection : operators.reflection;
         }
-        if (media.tops[k]) below = media.add_interface_of(k, components, below).reflection;
+        if (media.tops[k]) below = media.add_interface_of(k, m, components, below).reflection;
     }
     if (below.size() == 0)
         below = Eigen::MatrixXd::Zero(media.above.size() * components.count, media.above.size() * components.count);
