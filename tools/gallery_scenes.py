@@ -95,7 +95,7 @@ def room(*contents):
     return ('<scene version="3.0.0"><integrator type="path"><integer name="max_depth" value="9"/></integrator>'
             '<sensor type="perspective"><float name="fov" value="34"/><transform name="to_world">'
             '<lookat origin="0, 1, 4.4" target="0, 1, 0" up="0, 1, 0"/></transform><film type="hdrfilm">'
-            '<rfilter type="gaussian"/></film></sensor>' + "".join(walls) + lamp + "".join(contents) + "</scene>\n")
+            '<rfilter type="box"/></film></sensor>' + "".join(walls) + lamp + "".join(contents) + "</scene>\n")
 
 
 def ball(centre, radius, model):

@@ -137,7 +137,10 @@ std::vector<std::string> operation_names() {
 void write(const Product& product, const std::string& output) {
     const bool exr = std::filesystem::path(output).extension() == ".exr";
     if (const StokesImage* image = std::get_if<StokesImage>(&product)) {
-        if (exr) return io::write_stokes_exr(output, *image);
+        // Without bins the colours are all that holds the polarization.
+        io::StokesExrOptions channels;
+        channels.stokes_rgb = image->bin_count() == 0;
+        if (exr) return io::write_stokes_exr(output, *image, channels);
         return io::write_png(output, io::tone_map(*image));
     }
     const Bitmap& picture = std::get<Bitmap>(product);
@@ -236,12 +239,12 @@ int run(const Options& options, Session& session) {
     if (options.operation == "info") return info(options, session);
     if (options.operation == "diff") return diff(options, session);
     if (options.operation == "error") return error(options, session);
+    if (options.operation == "demosaic") return demosaic(options, session);
     const auto found = std::find_if(operations().begin(), operations().end(),
                                     [&](const Operation& operation) { return operation.name == options.operation; });
     if (found == operations().end())
         throw Error(ErrorKind::usage, fmt::format("unknown operation \"{}\" {}", options.operation,
                                                   did_you_mean(options.operation, operation_names())));
-    if (options.operation == "demosaic") return demosaic(options, session);
     if (!options.second.empty())
         throw Error(ErrorKind::usage, fmt::format("patina image {} takes one picture", options.operation));
     if (options.output.empty())

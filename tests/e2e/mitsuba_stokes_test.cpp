@@ -43,6 +43,20 @@ TEST_F(MitsubaStokes, RendersUnmodifiedWithMitsubasChannels) {
     EXPECT_EQ(read_file(folder() / "p.exr").find("S1.R"), std::string::npos);
 }
 
+// Through a polarization camera's sensor and back: a polarizer's light stays polarized along its axis.
+TEST_F(MitsubaStokes, ACamerasFrameGivesThePolarizationBack) {
+    ASSERT_EQ(patina("render " + scene() + " -o f.exr --no-png --spp 4 --crop 4,2,28,12 -D theta=45").exit_code, 0);
+    ASSERT_EQ(patina("image mosaic f.exr -o frame.exr --bits 12 --seed 2").exit_code, 0);
+    const Outcome back = patina("image demosaic frame.exr -o back.exr");
+    ASSERT_EQ(back.exit_code, 0) << back.err;
+    const json mean = json::parse(patina("image info back.exr --json").out).at("mean");
+    // As below, and the noise of 24 x 10 pixels with some thousand electrons each: below 1 %.
+    EXPECT_NEAR(mean[2].get<double>() / mean[0].get<double>(), 1, 0.04);
+    EXPECT_NEAR(mean[1].get<double>() / mean[0].get<double>(), 0, 0.04);
+    EXPECT_EQ(patina("image error back.exr f.exr -o e.png").exit_code, 0);
+    EXPECT_EQ(patina("image noise f.exr -o n.png").exit_code, 0);
+}
+
 // Half of the light, polarized along the axis: S1 > 0 horizontal, S2 > 0 at +45 degrees as the camera sees it, and the
 // circular polarizer's right-handed light has S3 > 0 (Mitsuba 3, key topic "polarization").
 TEST_F(MitsubaStokes, ComponentsHaveMitsubasSigns) {
