@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "patina/coating/spectral_medium.h"
 #include "patina/core/error.h"
 #include "patina/core/files.h"
 #include "patina/io/bitmap_file.h"
@@ -70,6 +71,7 @@ class Cache {
 
 render::SceneResources scene_resources(std::vector<std::string>& warnings, const JobControl& control) {
     const auto tables = std::make_shared<Cache<brdf::MuellerTable>>();
+    const auto media = std::make_shared<Cache<optics::SpectralMedium>>();
     const auto half_angle_tables = std::make_shared<Cache<brdf::HalfAngleTable>>();
     const auto merl_tables = std::make_shared<Cache<brdf::MerlTable>>();
     const auto meshes = std::make_shared<Cache<TriangleMesh>>();
@@ -77,6 +79,14 @@ render::SceneResources scene_resources(std::vector<std::string>& warnings, const
     render::SceneResources resources;
     resources.load_brdf_table = [tables, control](const std::string& path) {
         return tables->get(path, [&] { return load_table(path, control); });
+    };
+    resources.load_medium = [media](const std::string& path, int layer) {
+        return media->get(fmt::format("{}|{}", path, layer), [&] {
+            const coating::Recipe recipe = coating::read_recipe(path);
+            const bool one = recipe.is_wavelength_independent();
+            return std::make_shared<const optics::SpectralMedium>(
+                coating::spectral_medium(recipe, layer, 380, recipe_step_nm, one ? 1 : 400 / recipe_step_nm + 1));
+        });
     };
     resources.load_half_angle_table = [half_angle_tables](const std::string& path) {
         return half_angle_tables->get(

@@ -31,6 +31,8 @@ double flux_error(const TransferSystem<double>& system, const LayerOperators<dou
     return worst;
 }
 
+constexpr double lost_in_rounding = 1e-14;
+
 GroupSolution solve_group(const StackMedia& media, const LayerMethod& method, int m, Components components) {
     const Problem& problem = media.problem;
     const int count = static_cast<int>(problem.layers.size());
@@ -51,6 +53,8 @@ GroupSolution solve_group(const StackMedia& media, const LayerMethod& method, in
             }
             below = below.size() > 0 ? add_layer(operators, below).reflection : operators.reflection;
         }
+        // Orders that nothing scatters see the base through clear layers only.
+        if (m > 0 && below.size() > 0 && below.cwiseAbs().maxCoeff() < lost_in_rounding) below.resize(0, 0);
         if (media.tops[k]) below = media.add_interface_of(k, m, components, below).reflection;
     }
     if (below.size() == 0)

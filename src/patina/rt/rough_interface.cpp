@@ -75,6 +75,17 @@ std::vector<Cell> cells_of(const std::vector<Ray>& rays, int points) {
     return cells;
 }
 
+// Lobes of grazing rays are narrower in azimuth than the orders carry. A Gaussian as wide as it takes to bring their
+// last order to `negligible` smooths them: a mean over azimuths keeps flux, positivity and realizability.
+void smooth(std::vector<Mueller>& modes) {
+    constexpr double negligible = 1e-3;
+    const int last = static_cast<int>(modes.size()) - 1;
+    const double tail = std::max(std::abs(modes[last](0, 0)), std::abs(modes[last - 1](0, 0)));
+    if (!(tail > negligible * modes[0](0, 0))) return;
+    const double width = std::sqrt(2.0 * std::log(tail / (negligible * modes[0](0, 0)))) / last;
+    for (int m = 1; m <= last; ++m) modes[m] *= std::exp(-0.5 * std::pow(m * width, 2));
+}
+
 // Fourier modes of the facets' matrix between directions, averaged over their cells: [m], the blocks of Reflection.
 std::vector<Mueller> modes_between(const Microfacets& facets, const Azimuths& azimuths, const Cell& out, double sign_o,
                                    double index_o, const Cell& in, double sign_i, double index_i) {
@@ -99,6 +110,7 @@ std::vector<Mueller> modes_between(const Microfacets& facets, const Azimuths& az
                 const bool mixes = (row < 2) != (column < 2);
                 modes[m](row, column) = !mixes ? even(place, order) : row < 2 ? -odd(place, order) : odd(place, order);
             }
+    smooth(modes);
     return modes;
 }
 
