@@ -15,19 +15,21 @@ enum VertexDraw : std::uint32_t { light_choice, light_point, lobe_choice, lobe_d
 // One path being traced: where it is, what it carries, and how the last step was drawn.
 class PathState {
   public:
-    PathState(const TransportProblem& problem, CameraSample& sample)
+    PathState(const TransportProblem& problem, bool one_class, CameraSample& sample)
         : scene_(problem.scene),
           classes_(problem.classes),
+          one_class_(one_class),
           sample_(sample),
           ray_(sample.camera.ray),
           throughput_(sample.camera.stokes_axis) {}
 
     const Ray& ray() const { return ray_; }
+    int shape() const { return hit_.shape; }
     const Sampler& sampler() const { return sample_.sampler; }
 
     void meet(const Hit& hit) {
         hit_ = hit;
-        point_ = scene_.geometry.surface(ray_, hit);
+        scene_.geometry.find_surface(ray_, hit, point_);
     }
     void note_camera_hit(bool hit) { sample_.record->hit = hit; }
 
@@ -81,8 +83,8 @@ class PathState {
         const Vec3 outgoing = point_.frame.to_local(-ray_.direction);
         const ShadingPoint shading = shading_point();
         if (!bsdf_sample(bsdf(), shading, outgoing, lobe, u, sample)) return false;
-        events_ = sample.delta ? classes_.after(events_, ScatteringEvent::specular)
-                               : after_continuous_event(shading, outgoing);
+        events_ = sample.delta && !one_class_ ? classes_.after(events_, ScatteringEvent::specular)
+                                              : after_continuous_event(shading, outgoing);
         axes_to_world(sample.weight);
         throughput_.append(sample.weight, -ray_.direction);
         if (sample.dispersed && !hero_only_) {
@@ -112,11 +114,13 @@ class PathState {
     const Wavelengths& w() const { return sample_.wavelengths; }
     const Bsdf& bsdf() const { return scene_.bsdfs[scene_.geometry.shapes[hit_.shape].bsdf]; }
     ShadingPoint shading_point() const { return {&w(), point_.uv, scene_.bsdfs.data()}; }
-    void add(const StokesPacket& stokes, int events) { sample_.record->add(stokes, classes_.path_class(events)); }
+    void add(const StokesPacket& stokes, int events) {
+        sample_.record->add(stokes, one_class_ ? 0 : classes_.path_class(events));
+    }
 
     // The classifier's state after an event that is no delta function; where all paths are of one class it stays.
     int after_continuous_event(const ShadingPoint& shading, const Vec3& outgoing) const {
-        if (classes_.class_count() == 1) return events_;
+        if (one_class_) return events_;
         return classes_.after(events_, continuous_event(bsdf(), shading, outgoing));
     }
     float share_of_scattering(float light_pdf) const {
@@ -130,6 +134,7 @@ class PathState {
 
     const Scene& scene_;
     const LightPathClassifier& classes_;
+    const bool one_class_;  // events need not be told apart
     CameraSample& sample_;
     Ray ray_;
     Throughput throughput_;
@@ -151,13 +156,15 @@ class PathBlock {
               std::span<CameraSample> samples)
         : geometry_(problem.scene.geometry), settings_(settings) {
         paths_.reserve(samples.size());
-        for (CameraSample& sample : samples) alive_.push_back(&paths_.emplace_back(problem, sample));
+        const bool one_class = problem.classes.class_count() == 1;
+        for (CameraSample& sample : samples) alive_.push_back(&paths_.emplace_back(problem, one_class, sample));
     }
 
     void trace() {
         for (int depth = 0; !alive_.empty() && (settings_.max_depth < 0 || depth < settings_.max_depth); ++depth) {
             find_surfaces(depth);
             if (settings_.max_depth >= 0 && depth + 1 >= settings_.max_depth) return;
+            if (geometry_.shapes.size() > 1) group_by_surface();
             gather_direct_light(depth);
             scatter(depth);
         }
@@ -188,6 +195,12 @@ class PathBlock {
                 }
             }
         });
+    }
+
+    // Puts paths that met the same shape beside each other: the processor foresees what their model does.
+    void group_by_surface() {
+        std::stable_sort(alive_.begin(), alive_.end(),
+                         [](const PathState* a, const PathState* b) { return a->shape() < b->shape(); });
     }
 
     // Adds the light of a lamp drawn at random, scattered once.
