@@ -38,6 +38,7 @@ struct BsdfSample {
     bool delta = false;
     bool dispersed = false;   // the direction is right for the hero wavelength only
     float eta = 1;            // index of the incident side over that of the outgoing side
+    float adjoint = 1;        // delta events: factor on flux that runs from `outgoing` to `incident` (normal maps)
     ScatteringMatrix weight;  // BSDF times |cos incident| over pdf
 };
 

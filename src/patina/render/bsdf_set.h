@@ -9,6 +9,7 @@
 #include "patina/render/bsdfs/lafortune.h"
 #include "patina/render/bsdfs/mask.h"
 #include "patina/render/bsdfs/measured.h"
+#include "patina/render/bsdfs/normal_map.h"
 #include "patina/render/bsdfs/oren_nayar.h"
 #include "patina/render/bsdfs/paint.h"
 #include "patina/render/bsdfs/phong.h"
@@ -31,7 +32,7 @@ struct Bsdf {
                               Plastic, RoughPlastic, PolarizedPlastic, Paint,  // coatings
                               MeasuredPolarized, Merl,                         // tables
                               LinearPolarizer, Retarder, CircularPolarizer,    // polarization optics
-                              TwoSided, Blend, Mask, Null>;
+                              TwoSided, Blend, Mask, NormalMap, BumpMap, Null>;
     Model model;
 };
 

@@ -241,6 +241,39 @@ TEST(Agreement, PolarizedLamps) {
     for (int component : {1, 2, 3}) EXPECT_GT(significance(by_path, component), 10) << component;
 }
 
+Node normal_mapped(Node bsdf) {
+    const Node map = node("bsdf", "normalmap", {},
+                          {std::move(bsdf), node("texture", "bitmap", {{"filename", std::string("waves")}})});
+    map->children[1].name = "normalmap";
+    return map;
+}
+// Normals up to some 17 degrees from upright.
+std::shared_ptr<const Bitmap> waves() {
+    Bitmap image{"waves", 8, 8, {"R", "G", "B"}, {}};
+    for (int i = 0; i < 64; ++i) {
+        const auto x = static_cast<float>(0.5 + 0.15 * std::sin(i * 0.7)),
+                   y = static_cast<float>(0.5 + 0.1 * std::cos(i * 0.4));
+        image.data.insert(image.data.end(), {x, y, 0.97f});
+    }
+    return std::make_shared<const Bitmap>(std::move(image));
+}
+
+// Turned normals are not reciprocal: light paths have to weigh them otherwise than camera paths.
+TEST(Agreement, NormalMaps) {
+    SceneResources resources;
+    resources.load_bitmap = [](const std::string&, bool) { return waves(); };
+    const Node mirror = normal_mapped(node("bsdf", "conductor", {{"material", std::string("Al")}}));
+    const auto lit =
+        build_scene(*scene({path(4), camera(), lamp(6, 0.8), floor(0.6), wall(mirror),
+                            ball(0.6, normal_mapped(rough(0.4))), ball(-0.6, normal_mapped(node("bsdf", "diffuse")))}),
+                    resources);
+    const Measurements by_both = measure(*lit, "bidirectional", 64, "", 100);
+    expect_agreement(measure(*lit, "path", 128), by_both, "path, bidirectional");
+    expect_agreement(measure(*lit, "path", 128, "E(D|G).*L"), measure(*lit, "light", 128, "E(D|G).*L", 200),
+                     "path, light");
+    EXPECT_LT(relative_error(by_both), 0.02);
+}
+
 TEST(Agreement, RayTreesAreThePathsOfTheirGrammar) {
     for (const Node& tree : {glossy_scene(), specular_scene(), diffuse_scene()}) {
         const auto scene = build_scene(*tree, {});

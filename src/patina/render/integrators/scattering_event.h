@@ -30,6 +30,8 @@ inline ScatteringEvent continuous_event(const Bsdf& bsdf, const ShadingPoint& po
             } else if constexpr (std::is_same_v<Model, TwoSided>) {
                 return continuous_event(nested_bsdf(point, outgoing.z() > 0 ? model.front : model.back), point,
                                         outgoing);
+            } else if constexpr (std::is_base_of_v<NormalMap, Model>) {
+                return continuous_event(nested_bsdf(point, model.model), point, outgoing);
             } else if constexpr (std::is_same_v<Model, Diffuse> || std::is_same_v<Model, Paint>) {
                 return ScatteringEvent::diffuse;
             } else {

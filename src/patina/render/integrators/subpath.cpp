@@ -166,7 +166,7 @@ void trace_light_path(const SubpathContext& context, int most_vertices, Sampler&
             axes_to_world(at.point, m);
             // Flux is not scaled by the index squared as radiance is; shading normals scale it (Veach 1997, eq. 5.19).
             const float shading = std::abs(local_incident.z()) * cos_out / (cos_in * std::abs(sample.incident.z()));
-            m.scale(splat(sqr(sample.eta) * shading));
+            m.scale(splat(sqr(sample.eta) * shading * sample.adjoint));
             beam.scatter(m, outgoing);
         } else {
             BsdfValue value;
