@@ -1,6 +1,10 @@
 #pragma once
 // The film: what it is (size, window, filter, spectral bins) and the sums that samples leave on it.
 
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "patina/core/properties.h"
@@ -50,7 +54,7 @@ FilmSettings build_film(const Properties& node);
 // time.
 class Film {
   public:
-    Film(const FilmSettings& settings, const ColourMatching& matching);
+    Film(const FilmSettings& settings, const ColourMatching& matching, bool with_variance);
 
     // Adds one path: its Stokes vector at its four wavelengths.
     void add(std::size_t pixel, const StokesPacket& stokes, const Wavelengths& w, bool hit) {
@@ -75,19 +79,26 @@ class Film {
         add_wavelength<1>(sums, spectral, w, colour);
         add_wavelength<2>(sums, spectral, w, colour);
         add_wavelength<3>(sums, spectral, w, colour);
-        // Beside X, Y, Z of each Stokes component goes the square of Y.
-        const StokesPacket y =
-            __builtin_shufflevector(colour, colour, 1, 1, 1, 1, 5, 5, 5, 5, 9, 9, 9, 9, 13, 13, 13, 13);
-        colour += y * y * spread(Float4{0, 0, 0, 1});
         sums[bins_] += lanes_from<0>(colour);
         sums[bins_ + 1] += lanes_from<4>(colour);
         sums[bins_ + 2] += lanes_from<8>(colour);
         sums[bins_ + 3] += lanes_from<12>(colour);
     }
 
+    // Is `samples` a count of samples of a pixel after which a batch ends? There are up to `most_batches` of equal
+    // size, then they are joined two by two.
+    static bool batch_ends(int samples) { return samples % batch_size(samples) == 0; }
+    // Ends a batch, when so many samples are done: the spread of the batches' mean luminances tells the variance,
+    // whatever light came from other pixels' samples, and sees most of what stratified samples gain.
+    void end_batch(std::size_t pixel, int samples);
+
     // Root mean square over the pixels of the standard error of the luminance, over the picture's mean luminance.
     double relative_noise() const;
     StokesImage develop() const;
+    // All that the film knows, to be kept and put back. Bytes of the machine's own order.
+    std::array<std::span<std::byte>, 2> memory() {
+        return {std::as_writable_bytes(std::span(sums_)), std::as_writable_bytes(std::span(batches_))};
+    }
     std::size_t pixel_count() const { return static_cast<std::size_t>(settings_.crop_width) * settings_.crop_height; }
 
   private:
@@ -115,8 +126,20 @@ class Film {
     FilmSettings settings_;
     int bins_;
     std::size_t stride_;
-    // [pixel][slot]: Stokes vector of each bin, (X, Y, Z, Y^2) of each Stokes component, (samples, hits, -, -).
+    static constexpr int most_batches = 8;
+    static int batch_size(int samples) {
+        return samples <= most_batches ? 1
+                                       : static_cast<int>(std::bit_ceil(static_cast<unsigned>(samples)) / most_batches);
+    }
+    // Variances of the mean luminances of the Stokes components; infinite before the second batch.
+    std::array<double, 4> variances_of_means(std::size_t pixel) const;
+
+    // [pixel][slot]: Stokes vector of each bin; (X, Y, Z, -) of each Stokes component; (samples, hits, batches, samples
+    // in them).
     std::vector<Float4> sums_;
+    // [pixel][batch]: Y of the Stokes components at the end of the batch, summed from the first sample on. Empty: the
+    // variance is not asked for.
+    std::vector<Float4> batches_;
     std::vector<float> bin_weight_;  // (visible range / number of wavelengths) / width of the bin
     std::vector<Nanometre> nanometres_;
 };

@@ -111,6 +111,14 @@ class Throughput {
     // Intensity the camera sees of unpolarized light that arrives.
     Float4 intensity() const { return rank_ == Rank::identity ? splat(1) : stokes_row(columns_[0], 0); }
     bool depolarized() const { return rank_ == Rank::one; }
+    // The full matrix of one wavelength, for light in the frame with the path's present axis.
+    optics::Mueller matrix(int wavelength) const {
+        if (rank_ == Rank::identity) return optics::Mueller::Identity();
+        optics::Mueller full = optics::Mueller::Zero();
+        for (int column = 0; column < (rank_ == Rank::one ? 1 : 4); ++column)
+            for (int row = 0; row < 4; ++row) full(row, column) = columns_[column][4 * row + wavelength];
+        return full;
+    }
 
   private:
     // identity: nothing has happened yet and the columns are not written; one: only the first column is not zero.

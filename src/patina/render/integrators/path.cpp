@@ -1,7 +1,9 @@
 #include "patina/render/integrators/path.h"
 
+#include "patina/core/contract.h"
 #include "patina/render/arriving_light.h"
 #include "patina/render/mueller_packet.h"
+#include "patina/render/realizability.h"
 #include "patina/render/scene.h"
 
 namespace patina::render {
@@ -87,6 +89,11 @@ class PathState {
                                               : after_continuous_event(shading, outgoing);
         axes_to_world(sample.weight);
         throughput_.append(sample.weight, -ray_.direction);
+#ifndef NDEBUG
+        // Tables of measurements need not be realizable.
+        events_realizable_ = events_realizable_ && is_realizable(sample.weight);
+        PATINA_ASSERT(!events_realizable_ || is_realizable(throughput_));
+#endif
         if (sample.dispersed && !hero_only_) {
             hero_only_ = true;
             throughput_.keep_only_hero();
@@ -146,6 +153,9 @@ class PathState {
     bool last_delta_ = true, hero_only_ = false;
     StokesPacket direct_;  // light of a lamp, if nothing is in its way
     int direct_events_ = 0;
+#ifndef NDEBUG
+    bool events_realizable_ = true;
+#endif
 };
 
 // Paths that go on side by side: rays are cast and random numbers drawn for sixteen of them at once. What a path
