@@ -47,16 +47,6 @@ float fast_acos(float x) {
     return x < 0 ? pi_f - positive : positive;
 }
 
-// Index and weight of a linear interpolation on nodes 0 .. count - 1.
-struct Interval {
-    int lower;
-    float weight;
-    Interval(float position, int count) {
-        lower = std::clamp(static_cast<int>(position), 0, std::max(count - 2, 0));
-        weight = count < 2 ? 0.0f : std::clamp(position - static_cast<float>(lower), 0.0f, 1.0f);
-    }
-};
-
 Vec2 unit_azimuth(float x, float y, const Vec2& fallback) {
     const float length2 = x * x + y * y;
     return length2 > 1e-14f ? Vec2(Vec2(x, y) / std::sqrt(length2)) : fallback;
@@ -320,7 +310,7 @@ Vec3 PaintTable::sample(const Vec3& outgoing, const Vec2& u, float choice, float
     const float sin_i = safe_sqrt(1 - cos2), c = std::cos(azimuth), s = std::sin(azimuth);
     const Vec2 axis = unit_azimuth(outgoing.x(), outgoing.y(), Vec2::UnitX());
     const Vec3 incident(sin_i * (c * axis.x() - s * axis.y()), sin_i * (c * axis.y() + s * axis.x()), std::sqrt(cos2));
-    density = pdf(outgoing, incident);
+    density = cell_density(at, row, column) * incident.z() * inv_pi_f;
     return incident;
 }
 
@@ -329,13 +319,17 @@ float PaintTable::pdf(const Vec3& outgoing, const Vec3& incident) const {
     const Vec2 axis = unit_azimuth(outgoing.x(), outgoing.y(), Vec2::UnitX());
     const float x = incident.x() * axis.x() + incident.y() * axis.y();
     const float y = incident.y() * axis.x() - incident.x() * axis.y();
-    float azimuth = std::atan2(y, x) * (0.5f * inv_pi_f);
-    azimuth = azimuth < 0 ? azimuth + 1 : azimuth;
+    const float sin_i = std::sqrt(x * x + y * y);
+    const float half_turn = sin_i > 0 ? fast_acos(x / sin_i) * (0.5f * inv_pi_f) : 0.0f;
+    const float azimuth = y < 0 ? 1 - half_turn : half_turn;
     const int row = std::min(static_cast<int>(incident.z() * incident.z() * cells), cells - 1);
     const int column = std::min(static_cast<int>(azimuth * cells), cells - 1);
-    const float relative = (1 - at.weight) * directions_[at.lower].density(row, column) +
-                           at.weight * directions_[at.lower + 1].density(row, column);
-    return relative * incident.z() * inv_pi_f;
+    return cell_density(at, row, column) * incident.z() * inv_pi_f;
+}
+
+float PaintTable::cell_density(const Interval& outgoing, int row, int column) const {
+    return (1 - outgoing.weight) * directions_[outgoing.lower].density(row, column) +
+           outgoing.weight * directions_[outgoing.lower + 1].density(row, column);
 }
 
 }  // namespace patina::render

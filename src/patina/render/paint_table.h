@@ -65,6 +65,18 @@ class PaintTable {
     static constexpr int cells = 16;  // of the square of the light's cosine, and of its azimuth
     static constexpr int specular_nodes = 361;
 
+    // Index and weight of a linear interpolation on nodes 0 .. count - 1.
+    struct Interval {
+        int lower;
+        float weight;
+        Interval(float position, int count) {
+            lower = std::clamp(static_cast<int>(position), 0, std::max(count - 2, 0));
+            weight = count < 2 ? 0.0f : std::clamp(position - static_cast<float>(lower), 0.0f, 1.0f);
+        }
+    };
+    // Density of sample() in a cell for a viewer's angle, relative to the cosine-weighted hemisphere.
+    float cell_density(const Interval& outgoing, int row, int column) const;
+
     // Where a pair of directions lies on the axes.
     struct Place {
         float theta_o, theta_i, phi;  // in units of nodes, phi in 0 .. pi
