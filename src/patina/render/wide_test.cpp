@@ -96,14 +96,14 @@ TEST(PaintSampling, IsWithinATenthOfAPerfectTable) {
         const float theta = theta_deg * pi_f / 180;
         const Vec3 outgoing(std::sin(theta), 0, std::cos(theta));
         double mean_weight = 0, mean_square = 0;
+        int unlike = 0;
         constexpr int samples = 4096;
         for (int i = 0; i < samples; ++i) {
             Sampler sampler(5, static_cast<std::uint32_t>(i), 9);
             float density = 0;
             const Vec2 u = sampler.next2();
             const Vec3 incident = table.sample(outgoing, u, sampler.next(), density);
-            // What sample() says of its own density is what pdf() says.
-            EXPECT_NEAR(density, table.pdf(outgoing, incident), 0.2f * density);
+            unlike += std::abs(density - table.pdf(outgoing, incident)) > 1e-3f * density;
             ScatteringMatrix f;
             table.evaluate(w, outgoing, incident, true, f);
             const double weight = mean(f.m[0]) * incident.z() / density;
@@ -111,6 +111,23 @@ TEST(PaintSampling, IsWithinATenthOfAPerfectTable) {
             mean_square += weight * weight / samples;
         }
         EXPECT_LT(mean_square, 1.1 * mean_weight * mean_weight) << theta_deg << " degrees";
+        // Rounding may put a direction on the border of two cells into the other one.
+        EXPECT_LE(unlike, samples / 500);
+    }
+}
+
+TEST(PaintTableColumns, TheFirstAloneIsThatOfTheWhole) {
+    const PaintTable table(
+        brdf::tabulate(brdf::single_rayleigh_body(1.0), {.wavelengths_nm = {380, 580, 780}, .nodes = 16, .orders = 3}));
+    const Wavelengths w = Wavelengths::sample(0.7f);
+    Sampler sampler(3, 1, 4);
+    for (int i = 0; i < 200; ++i) {
+        const Vec3 outgoing = cosine_hemisphere(sampler.next2()), incident = cosine_hemisphere(sampler.next2());
+        ScatteringMatrix whole, first;
+        table.evaluate(w, outgoing, incident, false, whole);
+        table.evaluate(w, outgoing, incident, true, first);
+        for (int row = 0; row < 4; ++row)
+            for (int k = 0; k < 4; ++k) EXPECT_EQ(whole.m[row][k], first.m[row][k]);
     }
 }
 
