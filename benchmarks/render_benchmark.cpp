@@ -35,9 +35,8 @@ test::Node polar_balls() {
 }
 
 // Counts samples of a 256 x 256 picture on one core.
-void measure(const Scene& scene, benchmark::State& state) {
-    RenderOptions options;
-    options.samples_per_pixel = 16;
+void measure(const Scene& scene, benchmark::State& state, RenderOptions options = {}) {
+    options.samples_per_pixel = options.samples_per_pixel.value_or(16);
     double mean = 0;
     for (auto _ : state) {
         const StokesImage image = render(scene, options);
@@ -45,7 +44,7 @@ void measure(const Scene& scene, benchmark::State& state) {
         benchmark::DoNotOptimize(mean);
     }
     set_thread_count(0);
-    const double samples = 256.0 * 256.0 * 16 * state.iterations();
+    const double samples = 256.0 * 256.0 * *options.samples_per_pixel * state.iterations();
     state.counters["samples_per_core_second"] = benchmark::Counter(samples, benchmark::Counter::kIsRate);
     state.counters["times_mitsuba_llvm"] = benchmark::Counter(samples / 2.0e6, benchmark::Counter::kIsRate);
     state.counters["mean_green"] = mean / state.iterations();
@@ -56,6 +55,24 @@ void polar_balls_samples_per_core_second(benchmark::State& state) {
     measure(*build_scene(*polar_balls(), {}), state);
 }
 BENCHMARK(polar_balls_samples_per_core_second)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+
+// The same scene by every integrator that can. A sample of bidirectional is two paths and all ways to join them, one of
+// distribution a tree of rays.
+void polar_balls_by(benchmark::State& state, const char* integrator) {
+    set_thread_count(1);
+    RenderOptions options;
+    options.integrator = integrator;
+    options.samples_per_pixel = 4;
+    measure(*build_scene(*polar_balls(), {}), state, options);
+}
+BENCHMARK_CAPTURE(polar_balls_by, appel, "appel")->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(polar_balls_by, whitted, "whitted")->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(polar_balls_by, distribution, "distribution")->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(polar_balls_by, light, "light")->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(polar_balls_by, bidirectional, "bidirectional")
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(polar_balls_by, volumetric, "volumetric")->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 // Three painted spheres on a painted floor under an area light: nearly every vertex reads the paint table.
 test::Node painted_spheres() {

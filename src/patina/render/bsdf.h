@@ -28,8 +28,9 @@ struct Bsdf;
 struct ShadingPoint {
     const Wavelengths* wavelengths = nullptr;
     Vec2 uv = Vec2::Zero();
-    const Bsdf* set = nullptr;       // the scene's models, for those that are made of others
-    bool unpolarized_light = false;  // evaluate() need not fill but the first column of a general matrix
+    const Bsdf* set = nullptr;  // the scene's models, for those that are made of others
+    // evaluate(), and sample() of a paint, need not fill but the first column of a general matrix.
+    bool unpolarized_light = false;
 };
 
 struct BsdfSample {

@@ -80,15 +80,13 @@ std::uint32_t Geometry::occluded(RayBlock& rays, int count) const {
     return bits;
 }
 
-SurfacePoint Geometry::surface(const Ray& ray, const Hit& hit) const {
-    SurfacePoint point;
+void Geometry::find_surface(const Ray& ray, const Hit& hit, SurfacePoint& point) const {
     point.shape = hit.shape;
     if (hit.triangle)
         surface_of_triangle(hit, point);
     else
         surface_of_analytic(ray, hit, point);
     point.offset = relative_offset * std::max(point.position.cwiseAbs().maxCoeff(), 0.1f * radius_);
-    return point;
 }
 
 void Geometry::surface_of_analytic(const Ray& ray, const Hit& hit, SurfacePoint& point) const {

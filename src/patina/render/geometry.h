@@ -84,7 +84,13 @@ class Geometry {
     void intersect(RayBlock& rays, int count, Hit* hits) const;
     std::uint32_t occluded(RayBlock& rays, int count) const;
 
-    SurfacePoint surface(const Ray& ray, const Hit& hit) const;
+    SurfacePoint surface(const Ray& ray, const Hit& hit) const {
+        SurfacePoint point;
+        find_surface(ray, hit, point);
+        return point;
+    }
+    // The same written where it is kept: what has just been written is slow to copy.
+    void find_surface(const Ray& ray, const Hit& hit, SurfacePoint& point) const;
 
     // Draws a point of a shape's outside; false when none is drawn that can be seen from `from`.
     bool sample_shape(int shape, const Vec3& from, const Vec2& u, ShapeSample& sample) const;

@@ -101,6 +101,12 @@ class Throughput {
         rank_ = Rank::full;
     }
 
+    // Appends an event of which only the first column is known, or matters: nothing but unpolarized light will arrive.
+    void append_for_unpolarized(const ScatteringMatrix& event, const Vec3& outgoing) {
+        columns_[0] = of_unpolarized(splat(1), event, outgoing);
+        rank_ = Rank::one;
+    }
+
     void scale(float factor) { scale(splat(factor)); }
     void scale(Float4 factor) {
         write_identity();

@@ -30,6 +30,25 @@ StokesPacket load_halves(const std::uint16_t* p) {
 #endif
 }
 
+// The first row of a matrix whose columns stand beside each other from p on, for four wavelengths.
+StokesPacket load_first_row(const std::uint16_t* p) {
+    alignas(32) std::uint16_t row[16];
+    for (int column = 0; column < 4; ++column) std::copy_n(p + 16 * column, 4, row + 4 * column);
+    return load_halves(row);
+}
+
+// V changes its sign where light goes the other way.
+const StokesPacket other_way{1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, -1, -1, -1, -1};
+
+// Adds S M^T S, the matrix for light that goes the other way, to another's columns.
+void add_reversed(const StokesPacket* m, StokesPacket* columns) {
+    for (int c = 0; c < 4; ++c) {
+        const StokesPacket row =
+            make_stokes(stokes_row(m[0], c), stokes_row(m[1], c), stokes_row(m[2], c), stokes_row(m[3], c));
+        columns[c] += (c == 3 ? -row : row) * other_way;
+    }
+}
+
 // The four lanes turned by `steps` to the left: lane k takes what lane k + steps held.
 Float4 turned(Float4 x, int steps) {
     static constexpr Mask4 order[4] = {{0, 1, 2, 3}, {1, 2, 3, 0}, {2, 3, 0, 1}, {3, 0, 1, 2}};
@@ -46,16 +65,6 @@ float fast_acos(float x) {
     const float positive = p * std::sqrt(1 - a);
     return x < 0 ? pi_f - positive : positive;
 }
-
-// Index and weight of a linear interpolation on nodes 0 .. count - 1.
-struct Interval {
-    int lower;
-    float weight;
-    Interval(float position, int count) {
-        lower = std::clamp(static_cast<int>(position), 0, std::max(count - 2, 0));
-        weight = count < 2 ? 0.0f : std::clamp(position - static_cast<float>(lower), 0.0f, 1.0f);
-    }
-};
 
 Vec2 unit_azimuth(float x, float y, const Vec2& fallback) {
     const float length2 = x * x + y * y;
@@ -118,7 +127,7 @@ PaintTable::WavelengthPlace PaintTable::wavelength_place(float nm) const {
 }
 
 void PaintTable::tabulate_body(const brdf::MuellerTable& table) {
-    body_.assign(node(size_.angles, 0, 0), 0);
+    body_.assign(node(size_.angles - 1, size_.angles - 1, size_.azimuths), 0);
     const std::vector<double> mu = angle_cosines(size_.angles);
     std::vector<double> phi(size_.azimuths);
     for (int p = 0; p < size_.azimuths; ++p) phi[p] = pi * p / (size_.azimuths - 1);
@@ -126,7 +135,7 @@ void PaintTable::tabulate_body(const brdf::MuellerTable& table) {
         const int wavelength = static_cast<int>(w);
         const brdf::MuellerGrid grid = table.evaluate_grid(wavelength_nm(wavelength), mu, mu, phi);
         for (int o = 0; o < size_.angles; ++o)
-            for (int i = 0; i < size_.angles; ++i)
+            for (int i = o; i < size_.angles; ++i)
                 for (int p = 0; p < size_.azimuths; ++p) {
                     // Turn e_theta by -phi/2 on both sides.
                     const DoubleAngle turn{static_cast<float>(std::cos(phi[p])), static_cast<float>(-std::sin(phi[p]))};
@@ -232,15 +241,26 @@ template <int count>
 void PaintTable::interpolate(const Place& at, const WavelengthPlace& wavelength, StokesPacket* columns) const {
     const Interval o(at.theta_o, size_.angles), i(at.theta_i, size_.angles), p(at.phi, size_.azimuths);
     const int next = nodes_ > 1 ? 64 : 0;
-    StokesPacket sums[count]{};
+    StokesPacket sums[count]{}, reversed[count]{};
     for (int corner = 0; corner < 8; ++corner) {
-        const int co = corner & 1, ci = (corner >> 1) & 1, cp = corner >> 2;
-        const float weight =
-            (co ? o.weight : 1 - o.weight) * (ci ? i.weight : 1 - i.weight) * (cp ? p.weight : 1 - p.weight);
+        const int a = o.lower + (corner & 1), b = i.lower + ((corner >> 1) & 1), at_phi = p.lower + (corner >> 2);
+        const float weight = (corner & 1 ? o.weight : 1 - o.weight) * (corner & 2 ? i.weight : 1 - i.weight) *
+                             (corner & 4 ? p.weight : 1 - p.weight);
         const float high = weight * wavelength.weight, low = weight - high;
-        const std::uint16_t* place = &body_[node(o.lower + co, i.lower + ci, p.lower + cp)] + 64 * wavelength.lower;
+        const std::uint16_t* place = &body_[node(std::min(a, b), std::max(a, b), at_phi)] + 64 * wavelength.lower;
+        if (count == 1 && a > b) {
+            reversed[0] += low * load_first_row(place) + high * load_first_row(place + next);
+            continue;
+        }
+        StokesPacket* target = a > b ? reversed : sums;
         for (int column = 0; column < count; ++column)
-            sums[column] += low * load_halves(place + 16 * column) + high * load_halves(place + next + 16 * column);
+            target[column] += low * load_halves(place + 16 * column) + high * load_halves(place + next + 16 * column);
+    }
+    // Both ways add up in the same order, so that the first column alone has the bits it has in the whole.
+    if constexpr (count == 1) {
+        sums[0] += reversed[0] * other_way;
+    } else if (o.lower + 1 > i.lower) {
+        add_reversed(reversed, sums);
     }
     for (int column = 0; column < count; ++column) columns[column] = sums[column];
 }
@@ -320,7 +340,7 @@ Vec3 PaintTable::sample(const Vec3& outgoing, const Vec2& u, float choice, float
     const float sin_i = safe_sqrt(1 - cos2), c = std::cos(azimuth), s = std::sin(azimuth);
     const Vec2 axis = unit_azimuth(outgoing.x(), outgoing.y(), Vec2::UnitX());
     const Vec3 incident(sin_i * (c * axis.x() - s * axis.y()), sin_i * (c * axis.y() + s * axis.x()), std::sqrt(cos2));
-    density = pdf(outgoing, incident);
+    density = cell_density(at, row, column) * incident.z() * inv_pi_f;
     return incident;
 }
 
@@ -329,13 +349,17 @@ float PaintTable::pdf(const Vec3& outgoing, const Vec3& incident) const {
     const Vec2 axis = unit_azimuth(outgoing.x(), outgoing.y(), Vec2::UnitX());
     const float x = incident.x() * axis.x() + incident.y() * axis.y();
     const float y = incident.y() * axis.x() - incident.x() * axis.y();
-    float azimuth = std::atan2(y, x) * (0.5f * inv_pi_f);
-    azimuth = azimuth < 0 ? azimuth + 1 : azimuth;
+    const float sin_i = std::sqrt(x * x + y * y);
+    const float half_turn = sin_i > 0 ? fast_acos(x / sin_i) * (0.5f * inv_pi_f) : 0.0f;
+    const float azimuth = y < 0 ? 1 - half_turn : half_turn;
     const int row = std::min(static_cast<int>(incident.z() * incident.z() * cells), cells - 1);
     const int column = std::min(static_cast<int>(azimuth * cells), cells - 1);
-    const float relative = (1 - at.weight) * directions_[at.lower].density(row, column) +
-                           at.weight * directions_[at.lower + 1].density(row, column);
-    return relative * incident.z() * inv_pi_f;
+    return cell_density(at, row, column) * incident.z() * inv_pi_f;
+}
+
+float PaintTable::cell_density(const Interval& outgoing, int row, int column) const {
+    return (1 - outgoing.weight) * directions_[outgoing.lower].density(row, column) +
+           outgoing.weight * directions_[outgoing.lower + 1].density(row, column);
 }
 
 }  // namespace patina::render

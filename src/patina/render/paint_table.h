@@ -7,6 +7,10 @@
 // carried up the sphere. Such frames turn nowhere faster than the azimuth does, neither at the normal, where meridian
 // planes do, nor at backscattering, where scattering planes do, so that linear interpolation is safe everywhere.
 //
+// Reciprocity spares half of the pairs of polar angles: in these frames f(o, i) = S f(i, o)^T S with S = diag(1, 1, 1,
+// -1) at the same phi, for exchanging the rays mirrors phi, and turns y over with the direction of each ray. Only
+// theta_o <= theta_i is kept.
+//
 // A path's wavelengths are a quarter of the range apart (Wavelengths::sample), so all four lie at the same place in
 // their quarters: a node keeps the four quarters beside each other, and one load brings a column of the matrix for all
 // of them. Any other wavelengths are read one by one.
@@ -65,6 +69,18 @@ class PaintTable {
     static constexpr int cells = 16;  // of the square of the light's cosine, and of its azimuth
     static constexpr int specular_nodes = 361;
 
+    // Index and weight of a linear interpolation on nodes 0 .. count - 1.
+    struct Interval {
+        int lower;
+        float weight;
+        Interval(float position, int count) {
+            lower = std::clamp(static_cast<int>(position), 0, std::max(count - 2, 0));
+            weight = count < 2 ? 0.0f : std::clamp(position - static_cast<float>(lower), 0.0f, 1.0f);
+        }
+    };
+    // Density of sample() in a cell for a viewer's angle, relative to the cosine-weighted hemisphere.
+    float cell_density(const Interval& outgoing, int row, int column) const;
+
     // Where a pair of directions lies on the axes.
     struct Place {
         float theta_o, theta_i, phi;  // in units of nodes, phi in 0 .. pi
@@ -86,8 +102,10 @@ class PaintTable {
     void tabulate_body(const brdf::MuellerTable& table);
     void tabulate_specular(const brdf::MuellerTable& table);
     void tabulate_sampling();
-    std::size_t node(int o, int i, int p) const {
-        return (static_cast<std::size_t>(o * size_.angles + i) * size_.azimuths + p) * block_;
+    // Place of a pair of polar angles, the smaller first, and an azimuth.
+    std::size_t node(int small, int large, int p) const {
+        const int pair = small * size_.angles - small * (small - 1) / 2 + large - small;
+        return (static_cast<std::size_t>(pair) * size_.azimuths + p) * block_;
     }
     // Light's direction cell by cell, for one node of the viewer's angle.
     struct DirectionCells {
@@ -103,7 +121,7 @@ class PaintTable {
     int nodes_ = 1;                  // of wavelength in a quarter, both its ends
     int specular_wavelengths_ = 1;   // nodes over the whole range
     std::size_t block_;              // halves a node holds: [node of wavelength][column][row][quarter]
-    std::vector<std::uint16_t, LargePages<std::uint16_t>> body_;  // [theta_o][theta_i][phi][block]
+    std::vector<std::uint16_t, LargePages<std::uint16_t>> body_;  // [theta_o <= theta_i][phi][block]
     std::vector<std::array<float, 4>> specular_;                  // [theta][wavelength]
     std::vector<float> specular_share_;                           // [theta_o]
     std::vector<DirectionCells> directions_;                      // [theta_o]

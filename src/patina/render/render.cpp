@@ -319,9 +319,9 @@ class Renderer {
             s.record = &block.records[i];
             s.record->begin();
         }
-        Sensor::CameraRay rays[wide_lanes];
+        Sensor::CameraRay* rays[wide_lanes];
+        for (int i = first; i < last; ++i) rays[i - first] = &block.samples[i].camera;
         sensor_.rays(film_x, film_y, lens_x, lens_y, last - first, rays);
-        for (int i = first; i < last; ++i) block.samples[i].camera = rays[i - first];
     }
 
     // False: the sample is left out, for it is not finite.

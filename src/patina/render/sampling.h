@@ -55,12 +55,14 @@ class DiscreteDistribution {
         float probability;
         float remainder;  // u, made uniform again within the choice
     };
-    Choice sample(float u) const;
+    Choice sample(float u) const { return cumulative_.size() == 2 ? Choice{0, 1.0f, u} : search(u); }
     float probability(int index) const { return cumulative_[index + 1] - cumulative_[index]; }
     int size() const { return static_cast<int>(cumulative_.size()) - 1; }
     double total() const { return total_; }
 
   private:
+    Choice search(float u) const;
+
     std::vector<float> cumulative_;  // [size + 1], 0 .. 1
     double total_ = 0;
 };

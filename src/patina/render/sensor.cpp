@@ -29,9 +29,9 @@ Vec2 from_concentric_disk(const Vec2& d) {
 }  // namespace
 
 void Sensor::rays(const FloatLanes& film_x, const FloatLanes& film_y, const FloatLanes& lens_x,
-                  const FloatLanes& lens_y, int count, CameraRay* results) const {
+                  const FloatLanes& lens_y, int count, CameraRay* const* results) const {
     if (kind != Kind::perspective || aperture_radius > 0) {
-        for (int k = 0; k < count; ++k) results[k] = ray({film_x[k], film_y[k]}, {lens_x[k], lens_y[k]});
+        for (int k = 0; k < count; ++k) *results[k] = ray({film_x[k], film_y[k]}, {lens_x[k], lens_y[k]});
         return;
     }
     // A pinhole: as ray() does it, on sixteen lanes.
@@ -43,7 +43,7 @@ void Sensor::rays(const FloatLanes& film_x, const FloatLanes& film_y, const Floa
     d[0].store(direction.x), d[1].store(direction.y), d[2].store(direction.z);
     a[0].store(axis.x), a[1].store(axis.y), a[2].store(axis.z);
     for (int k = 0; k < count; ++k)
-        results[k] = {{origin, {d[0][k], d[1][k], d[2][k]}}, {a[0][k], a[1][k], a[2][k]}, Vec3::Zero()};
+        *results[k] = {{origin, {d[0][k], d[1][k], d[2][k]}}, {a[0][k], a[1][k], a[2][k]}, Vec3::Zero()};
 }
 
 void Sensor::refocus(const Vec3& direction, const Vec2& lens, Ray& ray) const {

@@ -53,7 +53,7 @@ struct Sensor {
     }
     // ray() for `count` places of the film side by side.
     void rays(const FloatLanes& film_x, const FloatLanes& film_y, const FloatLanes& lens_x, const FloatLanes& lens_y,
-              int count, CameraRay* results) const;
+              int count, CameraRay* const* results) const;
     // ray() depends on `lens`.
     bool uses_lens() const { return aperture_radius > 0 || (kind >= Kind::irradiance && !targeted); }
     // A measuring instrument: its film has no filter.

@@ -32,20 +32,25 @@ struct Paint {
         sample.incident = table->sample(outgoing, u2, (u - mirror) / (1 - mirror), density);
         sample.pdf = density * (1 - mirror);
         if (!(sample.pdf > 0)) return false;
-        table->evaluate(*point.wavelengths, outgoing, sample.incident, false, sample.weight);
-        sample.weight.scale(splat(sample.incident.z() / sample.pdf));
+        table->evaluate(*point.wavelengths, outgoing, sample.incident, point.unpolarized_light, sample.weight);
+        scale(sample.weight, sample.incident.z() / sample.pdf, point.unpolarized_light);
         return true;
     }
     bool evaluate(const ShadingPoint& point, const Vec3& outgoing, const Vec3& incident, BsdfValue& value) const {
         if (outgoing.z() <= 0 || incident.z() <= 0) return false;
         table->evaluate(*point.wavelengths, outgoing, incident, point.unpolarized_light, value.f);
-        for (int e = 0; e < (point.unpolarized_light ? 4 : 16); ++e) value.f.m[e] *= incident.z();
+        scale(value.f, incident.z(), point.unpolarized_light);
         value.pdf = table->pdf(outgoing, incident) * (1 - table->specular_share(outgoing.z()));
         return true;
     }
 
     static PluginDescriptor describe();
     static Paint build(const Properties& node, const BsdfBuilder& builder);
+
+  private:
+    static void scale(ScatteringMatrix& matrix, float factor, bool first_column_only) {
+        for (int e = 0; e < (first_column_only ? 4 : 16); ++e) matrix.m[e] *= factor;
+    }
 };
 
 }  // namespace patina::render

@@ -17,9 +17,10 @@ enum VertexDraw : std::uint32_t { light_choice, light_point, lobe_choice, lobe_d
 // One path being traced: where it is, what it carries, and how the last step was drawn.
 class PathState {
   public:
-    PathState(const TransportProblem& problem, CameraSample& sample)
+    PathState(const TransportProblem& problem, bool one_class, CameraSample& sample)
         : scene_(problem.scene),
           classes_(problem.classes),
+          one_class_(one_class),
           sample_(sample),
           ray_(sample.camera.ray),
           throughput_(sample.camera.stokes_axis) {}
@@ -29,7 +30,8 @@ class PathState {
 
     void meet(const Hit& hit) {
         hit_ = hit;
-        point_ = scene_.geometry.surface(ray_, hit);
+        scene_.geometry.find_surface(ray_, hit, point_);
+        if (abbreviated_ && !depolarizes(bsdf())) complete_last_event();
     }
     void note_camera_hit(bool hit) { sample_.record->hit = hit; }
 
@@ -67,7 +69,7 @@ class PathState {
         const Vec3 outgoing = point_.frame.to_local(-ray_.direction), incident = point_.frame.to_local(light.direction);
         if (!bsdf_evaluate(bsdf(), shading, outgoing, incident, value)) return false;
         const float share = light.delta ? 1.0f : power_heuristic(light.pdf, value.pdf);
-        axes_to_world(value.f);
+        axes_to_world(point_.frame, value.f);
         direct_ = arriving(throughput_, scene_.lights, light.emitter, light.radiance * (share / light.pdf),
                            -light.direction, value.f, -ray_.direction);
         direct_events_ = after_continuous_event(shading, outgoing);
@@ -81,17 +83,20 @@ class PathState {
     bool scatter(float lobe, const Vec2& u) {
         BsdfSample sample;
         const Vec3 outgoing = point_.frame.to_local(-ray_.direction);
-        const ShadingPoint shading = shading_point();
+        ShadingPoint shading = shading_point();
+        const bool abbreviate = may_abbreviate();
+        shading.unpolarized_light = abbreviate;
         if (!bsdf_sample(bsdf(), shading, outgoing, lobe, u, sample)) return false;
-        events_ = sample.delta ? classes_.after(events_, ScatteringEvent::specular)
-                               : after_continuous_event(shading, outgoing);
-        axes_to_world(sample.weight);
-        throughput_.append(sample.weight, -ray_.direction);
-#ifndef NDEBUG
-        // Tables of measurements need not be realizable.
-        events_realizable_ = events_realizable_ && is_realizable(sample.weight);
-        PATINA_ASSERT(!events_realizable_ || is_realizable(throughput_));
-#endif
+        events_ = sample.delta && !one_class_ ? classes_.after(events_, ScatteringEvent::specular)
+                                              : after_continuous_event(shading, outgoing);
+        axes_to_world(point_.frame, sample.weight);
+        abbreviated_ = abbreviate && !sample.delta;
+        if (abbreviated_) {
+            last_event_ = {throughput_, &bsdf(), point_, outgoing, sample.incident, 1 / sample.pdf};
+            throughput_.append_for_unpolarized(sample.weight, -ray_.direction);
+        } else {
+            append(sample.weight, -ray_.direction);
+        }
         if (sample.dispersed && !hero_only_) {
             hero_only_ = true;
             throughput_.keep_only_hero();
@@ -112,31 +117,70 @@ class PathState {
         const float survival = std::min(carried, 0.95f);
         if (!(u < survival)) return false;
         throughput_.scale(1 / survival);
+        last_event_.factor /= survival;
         return true;
     }
 
   private:
+    // An event of which the throughput has the first column only, as long as nothing but unpolarized light arrives
+    // there: enough to complete it.
+    struct AbbreviatedEvent {
+        Throughput before{Vec3::UnitX()};
+        const Bsdf* bsdf = nullptr;
+        SurfacePoint point;
+        Vec3 outgoing, incident;  // local
+        float factor = 1;         // that makes a weight of the model's value
+    };
+    // Three quarters of a paint's table can be spared where the path meets a lamp, the sky or a depolarizer next.
+    bool may_abbreviate() const {
+        return std::holds_alternative<Paint>(bsdf().model) && !scene_.lights.any_polarized();
+    }
+    static bool depolarizes(const Bsdf& bsdf) {
+        return std::holds_alternative<Diffuse>(bsdf.model) || std::holds_alternative<OrenNayar>(bsdf.model);
+    }
+    void complete_last_event() {
+        abbreviated_ = false;
+        const AbbreviatedEvent& event = last_event_;
+        const ShadingPoint shading{&w(), event.point.uv, scene_.bsdfs.data()};
+        BsdfValue value;
+        bsdf_evaluate(*event.bsdf, shading, event.outgoing, event.incident, value);
+        value.f.scale(splat(event.factor));
+        axes_to_world(event.point.frame, value.f);
+        throughput_ = event.before;
+        append(value.f, event.point.frame.to_world(event.outgoing));
+    }
     const Wavelengths& w() const { return sample_.wavelengths; }
     const Bsdf& bsdf() const { return scene_.bsdfs[scene_.geometry.shapes[hit_.shape].bsdf]; }
     ShadingPoint shading_point() const { return {&w(), point_.uv, scene_.bsdfs.data()}; }
-    void add(const StokesPacket& stokes, int events) { sample_.record->add(stokes, classes_.path_class(events)); }
+    void add(const StokesPacket& stokes, int events) {
+        sample_.record->add(stokes, one_class_ ? 0 : classes_.path_class(events));
+    }
 
     // The classifier's state after an event that is no delta function; where all paths are of one class it stays.
     int after_continuous_event(const ShadingPoint& shading, const Vec3& outgoing) const {
-        if (classes_.class_count() == 1) return events_;
+        if (one_class_) return events_;
         return classes_.after(events_, continuous_event(bsdf(), shading, outgoing));
     }
     float share_of_scattering(float light_pdf) const {
         return last_delta_ || light_pdf <= 0 ? 1.0f : power_heuristic(last_pdf_, light_pdf);
     }
-    void axes_to_world(ScatteringMatrix& m) const {
+    static void axes_to_world(const Frame& frame, ScatteringMatrix& m) {
         if (m.form == ScatteringMatrix::Form::depolarizing) return;
-        m.x_in = point_.frame.to_world(m.x_in);
-        m.x_out = point_.frame.to_world(m.x_out);
+        m.x_in = frame.to_world(m.x_in);
+        m.x_out = frame.to_world(m.x_out);
+    }
+    void append(const ScatteringMatrix& event, const Vec3& outgoing) {
+        throughput_.append(event, outgoing);
+#ifndef NDEBUG
+        // Tables of measurements need not be realizable.
+        events_realizable_ = events_realizable_ && is_realizable(event);
+        PATINA_ASSERT(!events_realizable_ || is_realizable(throughput_));
+#endif
     }
 
     const Scene& scene_;
     const LightPathClassifier& classes_;
+    const bool one_class_;  // events need not be told apart
     CameraSample& sample_;
     Ray ray_;
     Throughput throughput_;
@@ -146,6 +190,8 @@ class PathState {
     Vec3 last_position_ = Vec3::Zero();
     float last_pdf_ = 0, eta_ = 1;
     bool last_delta_ = true, hero_only_ = false;
+    bool abbreviated_ = false;  // the throughput has no more than the first column of last_event_
+    AbbreviatedEvent last_event_;
     StokesPacket direct_;  // light of a lamp, if nothing is in its way
     int direct_events_ = 0;
 #ifndef NDEBUG
@@ -161,7 +207,8 @@ class PathBlock {
               std::span<CameraSample> samples)
         : geometry_(problem.scene.geometry), settings_(settings) {
         paths_.reserve(samples.size());
-        for (CameraSample& sample : samples) alive_.push_back(&paths_.emplace_back(problem, sample));
+        const bool one_class = problem.classes.class_count() == 1;
+        for (CameraSample& sample : samples) alive_.push_back(&paths_.emplace_back(problem, one_class, sample));
     }
 
     void trace() {
