@@ -16,7 +16,7 @@ namespace patina::cli {
 namespace {
 
 struct Options {
-    std::string operation, input, second, output, style = "dark", map = "grey", white_balance = "equal-energy";
+    std::string operation, input, second, output, style = "dark", map = "grey", white_balance = "scene";
     double wavelength = 0.0, angle = 0.0, retardance = -1.0, exposure = 0.0, range = 0.0;
     int component = 1;
     bool normalized = false, manual_exposure = false, no_tone_curve = false;
@@ -60,9 +60,10 @@ Product tonemap(const StokesImage& image, const Options& options) {
     tone.exposure_ev = options.exposure;
     tone.automatic_exposure = !options.manual_exposure;
     tone.tone_curve = !options.no_tone_curve;
-    tone.white_balance = options.white_balance == "none"         ? io::WhiteBalance::none
-                         : options.white_balance == "grey-world" ? io::WhiteBalance::grey_world
-                                                                 : io::WhiteBalance::equal_energy;
+    tone.white_balance = options.white_balance == "none"           ? io::WhiteBalance::none
+                         : options.white_balance == "equal-energy" ? io::WhiteBalance::equal_energy
+                         : options.white_balance == "grey-world"   ? io::WhiteBalance::grey_world
+                                                                   : io::WhiteBalance::scene;
     return io::tone_map(image, tone);
 }
 
@@ -219,8 +220,10 @@ void add_image(CLI::App& program, Session& session) {
         ->check(CLI::IsMember({"dark", "light", "full"}));
     command->add_option("--exposure-ev", options->exposure, "tonemap: exposure in stops, on top of the automatic one");
     command->add_flag("--manual-exposure", options->manual_exposure, "tonemap: no automatic exposure");
-    command->add_option("--white-balance", options->white_balance, "tonemap: equal-energy | grey-world | none")
-        ->check(CLI::IsMember({"equal-energy", "grey-world", "none"}));
+    command
+        ->add_option("--white-balance", options->white_balance,
+                     "tonemap: scene (its lamps) | equal-energy | grey-world | none")
+        ->check(CLI::IsMember({"scene", "equal-energy", "grey-world", "none"}));
     command->add_flag("--no-tone-curve", options->no_tone_curve, "tonemap: clip instead of rolling off");
     command->callback([options, &session] { session.chosen = [options, &session] { return run(*options, session); }; });
 }

@@ -26,13 +26,20 @@ size_t edit_distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
+// What a file holds stands in messages about it, and may be a million characters long.
+std::string shortened(std::string_view text) {
+    constexpr size_t longest = 1000, end = 100;
+    if (text.size() <= longest) return std::string(text);
+    return fmt::format("{} ... {}", text.substr(0, longest - end), text.substr(text.size() - end));
+}
+
 std::string compose(std::string_view where, std::string_view problem, std::string_view why,
                     std::string_view suggestion) {
     std::string message;
     if (!where.empty()) message += fmt::format("{}: ", where);
-    message += problem;
-    if (!why.empty()) message += fmt::format(" ({})", why);
-    if (!suggestion.empty()) message += fmt::format(" {}", suggestion);
+    message += shortened(problem);
+    if (!why.empty()) message += fmt::format(" ({})", shortened(why));
+    if (!suggestion.empty()) message += fmt::format(" {}", shortened(suggestion));
     return message;
 }
 

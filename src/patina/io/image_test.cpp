@@ -208,6 +208,23 @@ TEST(ToneMap, AUniformSpectrumBecomesGreyWithEqualEnergyBalance) {
     EXPECT_NEAR(tone_map(image, {0.0, true, WhiteBalance::equal_energy, true}).data[1], roll_off(0.8), 1e-6);
 }
 
+// A white card under D65 is white, and under a lamp that no eye takes for white it stays coloured.
+TEST(ToneMap, TheLightOfTheSceneIsNeutral) {
+    StokesImage image = image_of({{1, 0, 0, 0}});
+    for (int c = 0; c < 3; ++c) image.stokes_rgb(0)[c] = 0.5f;
+    const auto shown = [&](const char* white) {
+        image.metadata["white_xyz"] = white;
+        const Bitmap picture = tone_map(image, {0.0, false, WhiteBalance::scene, true});
+        return Eigen::Vector3f(picture.data[0], picture.data[1], picture.data[2]);
+    };
+    // D65, to the five digits of the note.
+    EXPECT_LT((shown("0.95047 1 1.08883") - Eigen::Vector3f::Constant(0.5f)).norm(), 1e-3);
+    // The primary red of a screen, nonsense, and nothing: balanced to equal energy, which a D65 card is not.
+    const Bitmap equal = tone_map(image, {0.0, false, WhiteBalance::equal_energy, true});
+    for (const char* white : {"1.9395 1 0.0909", "nan 1 1", "", "0 0 0"})
+        EXPECT_EQ(shown(white), Eigen::Vector3f(equal.data[0], equal.data[1], equal.data[2])) << white;
+}
+
 TEST(ToneMap, EverythingFitsTheScreenAndKeepsItsLuminance) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> uniform(-0.2f, 5.0f);

@@ -12,6 +12,7 @@ struct Hit {
     int primitive = -1;  // of the shape's kind: analytic shape or triangle
     bool triangle = false;
     float u = 0, v = 0;  // barycentric coordinates in a triangle, parameters in a parallelogram
+    int instance = -1;   // through which the shape is seen; then analytic shapes are those of its group
 };
 
 struct AnalyticShape {

@@ -118,7 +118,7 @@ class PathState {
     }
     bool visible(const LightSample& light) const {
         // Stop short of the lamp itself; a share of the distance covers the rounding of its position.
-        Ray shadow{point_.origin(light.direction), light.direction, light.distance * (1 - 1e-4f)};
+        Ray shadow{point_.origin(light.direction), light.direction, light.distance * (1 - 1e-4f), ray_.time};
         return !scene_.geometry.occluded(shadow);
     }
     void axes_to_world(ScatteringMatrix& m) const {
