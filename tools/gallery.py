@@ -1,113 +1,57 @@
 #!/usr/bin/env python3
-"""The gallery: one small scene (a ball on a chequered floor, an area light, a studio around it) rendered with every
-reflection model and every integrator, in colour and as degree of linear polarization, on one page.
+"""The gallery: every reflection model, every integrator, the light-path expressions of the lectures, the Neumann series
+and the views of polarization, on one page.
 
-Usage: gallery.py [--patina build/release/bin/patina] [--out out/gallery] [--spp 64] [--size 192] [--only NAME ...]
-A picture that exists is kept (delete it to have it made anew); what the program does not know is left out, and said so.
-To show more, add a line to a table below."""
+Usage: gallery.py [--patina build/release/bin/patina] [--out out/gallery] [--spp 64] [--size 192]
+A picture that exists is kept (delete it to have it made anew); what fails is left out, and said so. To show more, add a
+line to a table here or in gallery_scenes.py."""
 import argparse
 import html
+import json
 import pathlib
 import subprocess
 import sys
 import time
 
+import gallery_scenes as scenes
 
-def value(kind, name, content):
-    return f'<{kind} name="{name}" value="{content}"/>'
-
-
-def bsdf(plugin, *content):
-    return f'<bsdf type="{plugin}">{"".join(content)}</bsdf>'
-
-
-COPPER_ROUGH = bsdf("roughconductor", value("string", "material", "Cu"), value("float", "alpha", 0.2))
-RED = value("rgb", "diffuse_reflectance", "0.6, 0.06, 0.05")
-GGX = value("string", "distribution", "ggx")
-CHECKS = ('<texture type="checkerboard" name="{}"><float name="color0" value="1"/><float name="color1" value="0"/>'
-          '<transform name="to_uv"><scale x="8" y="4"/></transform></texture>')
-
-# (name of the pictures, what is seen, the model). {table}, {pbsdf}, {merl}, {recipe} stand for files made below.
-MODELS = [
-    ("diffuse", "Lambert", bsdf("diffuse", value("rgb", "reflectance", "0.6, 0.06, 0.05"))),
-    ("orennayar", "Oren-Nayar, sigma 35 degrees",
-     bsdf("orennayar", value("rgb", "reflectance", "0.6, 0.06, 0.05"), value("float", "sigma", 35))),
-    ("phong", "modified Phong, exponent 40",
-     bsdf("phong", RED, value("float", "specular_reflectance", 0.3), value("float", "exponent", 40))),
-    ("lafortune", "Lafortune, a forward and a backward lobe",
-     bsdf("lafortune", RED, value("vector", "lobe_1", "-1, -1, 0.8"), value("float", "exponent_1", 40),
-          value("float", "weight_1", 0.25), value("vector", "lobe_2", "1, 1, 1"), value("float", "exponent_2", 8),
-          value("float", "weight_2", 0.1))),
-    ("plastic", "smooth plastic", bsdf("plastic", RED)),
-    ("roughplastic", "rough plastic, alpha 0.2", bsdf("roughplastic", RED, value("float", "alpha", 0.2))),
-    ("pplastic", "polarized plastic (Baek 2018), alpha 0.2", bsdf("pplastic", RED, value("float", "alpha", 0.2))),
-    ("dielectric", "glass", bsdf("dielectric")),
-    ("dielectric_dispersive", "zinc sulphide, dispersive", bsdf("dielectric", value("string", "int_ior", "ZnS"))),
-    ("roughdielectric", "rough glass, GGX alpha 0.15", bsdf("roughdielectric", GGX, value("float", "alpha", 0.15))),
-    ("thindielectric", "thin pane", bsdf("thindielectric")),
-    ("conductor", "gold", bsdf("conductor", value("string", "material", "Au"))),
-    ("roughconductor", "rough copper, alpha 0.2", COPPER_ROUGH),
-    ("roughconductor_aniso", "brushed aluminium, alpha 0.05 and 0.4",
-     bsdf("roughconductor", value("string", "material", "Al"), GGX, value("float", "alpha_u", 0.05),
-          value("float", "alpha_v", 0.4))),
-    ("paint", "paint from a recipe: titanium dioxide on aluminium", bsdf("paint", value("string", "table", "{table}"))),
-    ("measured_polarized", "the same paint as a .pbsdf table",
-     bsdf("measured_polarized", value("string", "filename", "{pbsdf}"))),
-    ("merl", "the same paint as a MERL table", bsdf("merl", value("string", "filename", "{merl}"))),
-    ("mask", "rough copper with holes", bsdf("twosided", bsdf("mask", CHECKS.format("opacity"), COPPER_ROUGH))),
-    ("blendbsdf", "plastic and rough copper in squares",
-     bsdf("blendbsdf", CHECKS.format("weight"), bsdf("plastic", RED), COPPER_ROUGH)),
-    ("null", "nothing", bsdf("null")),
-    ("polarizer", "a linear polarizer wrapped round", bsdf("polarizer", value("float", "theta", 45))),
-    ("retarder", "a quarter-wave film wrapped round", bsdf("retarder", value("float", "delta", 90))),
-    ("circular", "a circular polarizer wrapped round", bsdf("circular")),
-]
-
-# (plugin, what it solves); all on the scene with the rough glass ball and a plastic one.
+# (plugin, what it solves, samples per pixel over those asked for) in the room of glass and metal.
 INTEGRATORS = [
-    ("appel", "E(D|G)L"), ("whitted", "ES*(D|G)L"), ("distribution", "distribution ray tracing"),
-    ("path", "the rendering equation by path tracing"), ("light", "the adjoint equation: light tracing"),
-    ("bidirectional", "bidirectional path tracing"), ("volumetric", "path tracing with media"),
-    ("radiosity", "diffuse surfaces as a linear system"),
+    ("appel", "E(D|G)L: direct light and shadows", 0.5), ("whitted", "ES*(D|G)L: and mirrors and refraction", 0.5),
+    ("distribution", "E(S|G)*(D|G)?L: and glossy reflection", 0.25),
+    ("path", "all paths, from the eye", 2), ("volumetric", "all paths, and media where there are any", 2),
+    ("light", "from the lamp: all but ES...L", 2), ("bidirectional", "all paths, from both ends", 1),
 ]
-
-SCENE = """<scene version="3.0.0">
-    <integrator type="{integrator}"><integer name="max_depth" value="10"/></integrator>
-    <sensor type="perspective">
-        <float name="fov" value="32"/>
-        <transform name="to_world"><lookat origin="0, 2.4, 5.2" target="0, 0.85, 0" up="0, 1, 0"/></transform>
-        <sampler type="independent"><integer name="sample_count" value="{spp}"/></sampler>
-        <film type="hdrfilm">
-            <integer name="width" value="{size}"/><integer name="height" value="{size}"/><rfilter type="gaussian"/>
-        </film>
-    </sensor>
-    <shape type="sphere">
-        <point name="center" value="0, 1, 0"/><float name="radius" value="1"/>
-        {bsdf}
-    </shape>
-    <shape type="rectangle">
-        <transform name="to_world"><rotate x="1" angle="-90"/><scale value="12"/></transform>
-        <bsdf type="diffuse"><texture type="checkerboard" name="reflectance">
-            <float name="color0" value="0.5"/><float name="color1" value="0.15"/>
-            <transform name="to_uv"><scale x="16" y="16"/></transform>
-        </texture></bsdf>
-    </shape>
-    <shape type="rectangle">
-        <transform name="to_world">
-            <scale value="0.8"/><lookat origin="-3.5, 4.5, 3" target="0, 1, 0" up="0, 1, 0"/>
-        </transform>
-        <emitter type="area"><float name="radiance" value="14"/></emitter>
-    </shape>
-    <emitter type="envmap"><string name="filename" value="{studio}"/><float name="scale" value="0.6"/></emitter>
-</scene>
-"""
-
-PAGE_HEAD = """<!doctype html><meta charset="utf-8"><title>Patina: gallery</title>
-<style>body{font:15px/1.4 sans-serif;max-width:1400px;margin:2em auto;padding:0 1em;color:#222}
-.grid{display:flex;flex-wrap:wrap;gap:1.2em}figure{margin:0;width:400px}
-figure img{width:196px;margin-right:4px;background:#000}figcaption{margin:.2em 0}code{color:#555}</style>
-<h1>Gallery</h1><p>Left the colour, right the degree of linear polarization (black 0, white 1).</p>
-"""
+# In the diffuse room, where radiosity is possible.
+DIFFUSE_INTEGRATORS = [
+    ("radiosity", "a linear system over patches, gathered at each pixel", 0.25, {}),
+    ("radiosity", "the patches themselves", 0.1, {"gather": "false"}),
+    ("path", "path tracing, to compare", 2, {}), ("bidirectional", "both ends, to compare", 1, {}),
+]
+# The lectures' expressions, and the methods as they name them.
+EXPRESSIONS = [
+    ("le", "LE", "the lamp itself"), ("lde", "LDE", "direct light on diffuse surfaces"),
+    ("lse", "LSE", "the lamp in one mirror"), ("lsde", "LSDE", "light thrown by a mirror"),
+    ("lssde", "LSSDE", "light focused by glass: two refractions"),
+    ("indirect", "L(S|D)+DE", "all that comes by way of other surfaces, seen on a diffuse one"),
+    ("appel", "E(D|G)L", "Appel (1968)"), ("whitted", "ES*(D|G)L", "Whitted (1980)"),
+    ("kajiya", "E[(D|G|S)+(D|G)]L", "Kajiya (1986), as the lecture writes it"), ("all", "E.*L", "everything"),
+]
+NEUMANN_TERMS = 6
+# (name, caption, words of `patina image` after the input)
+VIEWS = [
+    ("tonemap", "colour", []), ("dolp", "degree of linear polarization", ["--map", "inferno"]),
+    ("aolp", "angle of linear polarization: hue over 180 degrees, as bright as polarized", []),
+    ("docp", "degree of circular polarization: right red, left blue", []),
+    ("type", "type: linear cyan, circular yellow", []), ("chirality", "chirality: right blue, left yellow", []),
+    ("stokes", "S1/S0", ["--component", 1, "--normalized", "--range", 1]),
+    ("stokes", "S2/S0", ["--component", 2, "--normalized", "--range", 1]),
+    ("stokes", "S3/S0", ["--component", 3, "--normalized", "--range", 1]),
+    ("polarizer", "through a polarizer at 0 degrees", ["--angle-deg", 0]),
+    ("polarizer", "through a polarizer at 90 degrees", ["--angle-deg", 90]),
+    ("waveplate", "through a quarter-wave plate at 45 degrees", ["--angle-deg", 45]),
+    ("noise", "the noise that the picture states of itself: standard error over S0", []),
+]
 
 
 class Gallery:
@@ -115,75 +59,192 @@ class Gallery:
         self.root = pathlib.Path(__file__).resolve().parent.parent
         self.patina = pathlib.Path(arguments.patina).resolve()
         self.out = pathlib.Path(arguments.out).resolve()
-        self.spp, self.size, self.only = arguments.spp, arguments.size, arguments.only
+        self.spp, self.size = arguments.spp, arguments.size
         self.out.mkdir(parents=True, exist_ok=True)
         self.files = {name: self.out / file for name, file in
                       [("table", "paint.h5"), ("pbsdf", "paint.pbsdf"), ("merl", "paint.binary"), ("studio", "studio.pfm")]}
+        self.failures = []
 
     def run(self, *words):
-        """Runs the program; the last line of what it complains about, or None."""
-        done = subprocess.run([str(self.patina), "-q", *map(str, words)], stdout=subprocess.DEVNULL,
-                              stderr=subprocess.PIPE, text=True)
-        return None if done.returncode == 0 else (done.stderr.strip() or "failed")
+        """Runs the program; its document, or None when it failed."""
+        done = subprocess.run([str(self.patina), "-q", "--json", *map(str, words)], capture_output=True, text=True)
+        if done.returncode == 0:
+            return json.loads(done.stdout or "{}")
+        self.failures.append((" ".join(map(str, words)), done.stderr.strip() or "failed"))
+        return None
 
     def make_inputs(self):
         if not self.files["studio"].exists():
             subprocess.run([sys.executable, self.root / "tools" / "make_studio.py", self.files["studio"]], check=True)
         if not self.files["table"].exists():
-            problem = self.run("solve", self.root / "examples" / "tio2_on_aluminium.toml", "-o", self.files["table"],
-                               "--wavelengths", "400:700:50")
-            if problem:
-                sys.exit(f"gallery: {problem}")
+            self.run("solve", self.root / "examples" / "tio2_on_aluminium.toml", "-o", self.files["table"],
+                     "--wavelengths", "400:700:50")
         for name in ("pbsdf", "merl"):
             if not self.files[name].exists():
                 grid = ["--grid", "37x23x32"] if name == "pbsdf" else []  # a tenth of the usual size
                 self.run("convert", self.files["table"], self.files[name], *grid)
 
-    def picture(self, name, integrator, model):
-        """Renders one ball; what went wrong, or None."""
-        if (self.out / f"{name}_dolp.png").exists():
-            return None
-        scene = self.out / f"{name}.xml"
-        for key, path in self.files.items():
-            model = model.replace("{" + key + "}", str(path))
-        scene.write_text(SCENE.format(integrator=integrator, bsdf=model, spp=self.spp, size=self.size,
-                                      studio=self.files["studio"]))
-        return (self.run("render", scene, "-o", self.out / f"{name}.exr")
-                or self.run("image", "dolp", self.out / f"{name}.exr", "-o", self.out / f"{name}_dolp.png", "--map", "grey"))
-
-    def section(self, title, entries):
-        """Renders entries (name, caption, code, integrator, model) and returns their part of the page."""
-        parts, left_out = [f"<h2>{title}</h2><div class=grid>"], []
-        for name, caption, code, integrator, model in entries:
-            if self.only and name not in self.only:
-                continue
+    def render(self, name, scene, *words, spp=1.0, size=None):
+        """The EXR of a scene's text; its metadata are kept beside it. None when it failed."""
+        picture, note = self.out / f"{name}.exr", self.out / f"{name}.json"
+        if not (picture.exists() and note.exists()):
+            for key, path in self.files.items():
+                scene = scene.replace("{" + key + "}", str(path))
+            (self.out / f"{name}.xml").write_text(scene)
             start = time.time()
-            problem = self.picture(name, integrator, model)
-            print(f"{name:<24} {problem or f'{time.time() - start:.1f} s'}", flush=True)
-            if problem:
-                left_out.append((name, problem))
-                continue
-            parts.append(f'<figure><img src="{name}.png"><img src="{name}_dolp.png"><figcaption><b>{code}</b>: '
-                         f'{html.escape(caption)}</figcaption></figure>')
-        parts.append("</div>")
-        unknown = [name for name, problem in left_out if "unknown" in problem]
-        if unknown:
-            parts.append(f"<p>Not in this program: {', '.join(unknown)}.</p>")
-        for name, problem in left_out:
-            if name not in unknown:
-                parts.append(f"<p>{name} failed: <code>{html.escape(problem)}</code></p>")
-        return "\n".join(parts)
+            document = self.run("render", self.out / f"{name}.xml", "-o", picture, "--no-png", "--size",
+                                "{0}x{0}".format(size or self.size), "--spp", max(1, round(spp * self.spp)), *words)
+            if document is None:
+                return None
+            note.write_text(json.dumps(document["metadata"]))
+            print(f"{name:<24} {time.time() - start:.1f} s", flush=True)
+        return picture
+
+    def view(self, picture, operation, name, *words):
+        target = self.out / f"{name}.png"
+        if not target.exists() and self.run("image", operation, picture, "-o", target, *words) is None:
+            return None
+        return target
+
+    def shown(self, picture, exposure_ev, name=None):
+        """Colour at a fixed exposure, so that pictures of a row compare."""
+        return self.view(picture, "tonemap", name or picture.stem, "--manual-exposure", "--exposure-ev", exposure_ev)
+
+    @staticmethod
+    def figure(images, code, caption, width):
+        tags = "".join(f'<img src="{image.name}" alt="" style="width:{width}px">' for image in images)
+        label = f"<code>{html.escape(code)}</code> " if code else ""
+        return (f'<figure style="width:{len(images) * (width + 4)}px">{tags}'
+                f"<figcaption>{label}{html.escape(caption)}</figcaption></figure>")
+
+    @staticmethod
+    def section(title, text, figures):
+        return f"<section><h2>{title}</h2><p>{text}</p><div class=grid>{''.join(figures)}</div></section>"
+
+    def pair(self, picture, code, caption, exposure_ev):
+        """Colour and DoLP side by side; nothing when the picture failed."""
+        if picture is None:
+            return ""
+        images = [self.shown(picture, exposure_ev), self.view(picture, "dolp", f"{picture.stem}_dolp", "--map", "inferno")]
+        return self.figure([image for image in images if image], code, caption, 192)
+
+    def models(self):
+        figures = []
+        for name, caption, model in scenes.MODELS:
+            code = "roughconductor" if name == "roughconductor_aniso" else name.replace("_dispersive", "")
+            figures.append(self.pair(self.render(name, scenes.BALL.replace("{bsdf}", model), spp=1.5), code, caption, -0.4))
+        return self.section("Reflection models", "A ball on a chequered floor under a small bright lamp in a studio; one "
+                            "exposure for all. Left colour, right the degree of linear polarization (black 0, pale "
+                            "yellow 1).", figures)
+
+    def integrators(self):
+        figures = [self.pair(self.render(f"integrator_{name}", scenes.MIXED_ROOM, "--integrator", name, spp=share), name,
+                             caption, 0.6) for name, caption, share in INTEGRATORS]
+        figures.append(self.pair(self.render("media", scenes.FOG_ROOM, "--integrator", "volumetric", spp=2), "volumetric",
+                                 "two balls of fog: Rayleigh's phase matrix, and Henyey and Greenstein's", 0.6))
+        diffuse = []
+        for i, (name, caption, share, options) in enumerate(DIFFUSE_INTEGRATORS):
+            extra = "".join(scenes.value("boolean", key, text) for key, text in options.items())
+            scene = scenes.DIFFUSE_ROOM.replace('<integrator type="path">', f'<integrator type="{name}">{extra}', 1)
+            if name == "radiosity":
+                scene = scene.replace(scenes.value("integer", "max_depth", 9), "", 1)
+            picture = self.render(f"diffuse_{i}", scene, spp=share)
+            if picture:
+                diffuse.append(self.figure([self.shown(picture, 0.6)], name, caption, 192))
+        return (self.section("Integrators", "One room, one exposure: what each method of light transport sees of it. Mirrors "
+                             "and glass before the eye stay dark to light tracing, whose paths end at a pinhole.", figures)
+                + self.section("The diffuse room", "Without mirrors light transport is a linear system, and it can be "
+                               "solved as one.", diffuse))
+
+    def expressions(self):
+        words = [word for name, expression, _ in EXPRESSIONS for word in ("--lpe", f"{name}={expression}")]
+        whole = self.render("paths", scenes.MIXED_ROOM, "--integrator", "bidirectional", *words, spp=3)
+        figures = []
+        if whole:
+            for name, expression, caption in EXPRESSIONS:
+                image = self.shown(self.out / f"paths.{name}.exr", 0.6, f"paths_{name}")
+                figures.append(self.figure([image], expression, caption, 192))
+        return self.section("Light-path expressions", "The same room taken apart by what the light met on its way: L lamp, "
+                            "E eye, D diffuse, G glossy, S specular. Traced from both ends in one render.", figures)
+
+    def neumann(self):
+        whole = self.render("neumann", scenes.MIXED_ROOM, "--integrator", "bidirectional", "--neumann", NEUMANN_TERMS, spp=2)
+        if not whole:
+            return ""
+        metadata = json.loads((self.out / "neumann.json").read_text())
+        figures = []
+        for term in range(NEUMANN_TERMS):
+            image = self.shown(self.out / f"neumann.neumann_{term:02}.exr", 0.6, f"neumann_{term}")
+            ratio = metadata.get(f"neumann_ratio_{term - 1:02}")
+            name = "L_e" if term == 0 else "T L_e" if term == 1 else f"T^{term} L_e"
+            caption = "what shines" if term == 0 else f"scattered {term} times" if term > 1 else "scattered once"
+            if ratio and term > 1:
+                caption += f"; {float(ratio):.2f} of the term before"
+            figures.append(self.figure([image], name, caption, 192))
+        figures.append(self.figure([self.shown(self.out / "neumann.neumann_rest.exr", 0.6, "neumann_rest")], "rest",
+                                   "all higher powers", 192))
+        figures.append(self.figure([self.shown(whole, 0.6)], "L", "their sum, to the last bit", 192))
+        norm = float(metadata["neumann_norm"])
+        return self.section("Neumann series", "L = L<sub>e</sub> + T L<sub>e</sub> + T<sup>2</sup> L<sub>e</sub> + ..., one "
+                            f"picture a power of the transport operator. Its measured norm, as this camera sees it: "
+                            f"<b>{norm:.2f}</b>.", figures)
+
+    def polarization(self):
+        picture = self.render("still_life", scenes.STILL_LIFE, spp=3, size=256)
+        reference = self.render("still_life_reference", scenes.STILL_LIFE, "--seed", 1, spp=12, size=256)
+        if not picture or not reference:
+            return ""
+        figures = []
+        for i, (operation, caption, words) in enumerate(VIEWS):
+            if operation in ("tonemap", "polarizer", "waveplate"):
+                source = picture
+                if operation != "tonemap":
+                    source = self.out / f"view_{i}.exr"
+                    if not source.exists():
+                        self.run("image", operation, picture, "-o", source, *words)
+                image = self.shown(source, 0.3, f"view_{i}")
+            else:
+                image = self.view(picture, operation, f"view_{i}", *words)
+            if image:
+                figures.append(self.figure([image], operation, caption, 256))
+        figures += self.camera(picture)
+        error = self.view(picture, "error", "view_error", reference)
+        return self.section("Polarization", "Plastic, gold, a linear polarizer at 45 degrees and a circular one standing on "
+                            "a dark table: the views of <code>patina image</code>, and what a polarization camera makes of "
+                            "them.", figures + ([] if error is None else [self.figure(
+                                [error], "error", "error of S0 against a picture of four times the samples", 256)]))
+
+    def camera(self, picture):
+        """The raw frame of a polarization camera with few electrons, and the DoLP it gives back."""
+        frame, back = self.out / "frame.exr", self.out / "frame_stokes.exr"
+        if not back.exists():
+            self.run("image", "mosaic", picture, "-o", frame, "--full-well-e", 1000, "--read-noise-e", 5, "--bits", 8)
+            self.run("image", "demosaic", frame, "-o", back)
+        raw = self.view(picture, "mosaic", "frame", "--full-well-e", 1000, "--read-noise-e", 5, "--bits", 8)
+        dolp = self.view(back, "dolp", "frame_dolp", "--map", "inferno")
+        return [self.figure([image], code, caption, 256) for image, code, caption in
+                [(raw, "mosaic", "the raw frame: 1000 electrons a pixel, read noise 5, 8 bits; linear"),
+                 (dolp, "demosaic", "DoLP from that frame: noise looks like polarization where it is dark")] if image]
 
     def make(self):
+        start = time.time()
         self.make_inputs()
-        glass = next(model for name, _, model in MODELS if name == "roughdielectric")
-        page = PAGE_HEAD + self.section(
-            "Reflection models", [(name, caption, name.split("_")[0] if name != "measured_polarized" else name, "path", model)
-                                  for name, caption, model in MODELS])
-        page += self.section("Integrators", [(f"integrator_{name}", caption, name, name, glass)
-                                             for name, caption in INTEGRATORS])
+        page = PAGE_HEAD + self.models() + self.integrators() + self.expressions() + self.neumann() + self.polarization()
+        for command, problem in self.failures:
+            page += f"<p>Failed: <code>patina {html.escape(command)}</code>: {html.escape(problem)}</p>"
+            print(f"failed: patina {command}: {problem}", file=sys.stderr)
         (self.out / "index.html").write_text(page)
-        print(self.out / "index.html")
+        print(f"{self.out / 'index.html'} ({time.time() - start:.0f} s)")
+        return 1 if self.failures else 0
+
+
+PAGE_HEAD = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Patina: gallery</title>
+<style>body{font:15px/1.4 system-ui,sans-serif;max-width:1440px;margin:1.5em auto;padding:0 1em;color:#1c1f24;background:#fafafa}
+h2{margin:2em 0 .2em;border-top:1px solid #d6d9de;padding-top:1em}p{max-width:60em;margin:.3em 0 1em}
+.grid{display:flex;flex-wrap:wrap;gap:1.1em}figure{margin:0}figure img{margin-right:4px;background:#000;border-radius:3px}
+figcaption{font-size:.85rem;color:#4a515c;padding:.15em 0}code{color:#1c1f24;font-weight:600}</style>
+<h1>Gallery</h1>
+"""
 
 
 def main():
@@ -192,8 +253,7 @@ def main():
     parser.add_argument("--out", default="out/gallery")
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--size", type=int, default=192)
-    parser.add_argument("--only", nargs="*", help="names of single pictures")
-    Gallery(parser.parse_args()).make()
+    sys.exit(Gallery(parser.parse_args()).make())
 
 
 if __name__ == "__main__":

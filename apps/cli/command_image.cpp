@@ -1,10 +1,14 @@
+#include <optional>
+
 #include "command.h"
 #include <fmt/format.h>
 
 #include "patina/core/error.h"
 #include "patina/core/files.h"
+#include "patina/io/bitmap_file.h"
 #include "patina/io/image_compare.h"
 #include "patina/io/image_legend.h"
+#include "patina/io/image_mosaic.h"
 #include "patina/io/image_optics.h"
 #include "patina/io/image_tone.h"
 #include "patina/io/image_views.h"
@@ -18,7 +22,9 @@ namespace {
 struct Options {
     std::string operation, input, second, output, style = "dark", map = "grey", white_balance = "scene";
     double wavelength = 0.0, angle = 0.0, retardance = -1.0, exposure = 0.0, range = 0.0;
-    int component = 1;
+    std::optional<int> component;
+    io::SensorNoise sensor;
+    bool noise = false;
     bool normalized = false, manual_exposure = false, no_tone_curve = false;
 };
 
@@ -36,9 +42,11 @@ io::ColorMap map_named(const std::string& name) {
 }
 
 Product stokes_view(const StokesImage& image, const Options& options) {
-    float range = static_cast<float>(options.range), used = 0.0f;
-    const Bitmap view = io::stokes_view(plane_of(image, options), options.component, options.normalized, range, used);
-    const bool intensity = options.component == 0 && !options.normalized;
+    const float range = static_cast<float>(options.range);
+    const int component = options.component.value_or(1);
+    float used = 0.0f;
+    const Bitmap view = io::stokes_view(plane_of(image, options), component, options.normalized, range, used);
+    const bool intensity = component == 0;
     return io::with_legend(
         view, {intensity ? io::ColorMap::inferno : io::ColorMap::diverging, intensity ? 0.0f : -used, used});
 }
@@ -53,6 +61,26 @@ Product aolp_view(const StokesImage& image, const Options& options) {
                                 : options.style == "light" ? io::AolpStyle::light
                                                            : io::AolpStyle::dark;
     return io::aolp_view(plane_of(image, options), style);
+}
+
+Product docp_view(const StokesImage& image, const Options& options) {
+    return io::with_legend(io::docp_view(plane_of(image, options)), {io::ColorMap::diverging, -1.0f, 1.0f});
+}
+
+// Shares of S0 with their scale.
+Product share_view(const StokesImage& image, const std::vector<float>& shares, const Options& options) {
+    float used = 0.0f;
+    const Bitmap view = io::share_view(image, shares, static_cast<float>(options.range), used);
+    return io::with_legend(view, {io::ColorMap::inferno, 0.0f, used});
+}
+
+Product noise_view(const StokesImage& image, const Options& options) {
+    return share_view(image, io::relative_noise(image, options.component.value_or(0)), options);
+}
+
+Product mosaic(const StokesImage& image, const Options& options) {
+    const Bitmap frame = io::polarization_mosaic(plane_of(image, options));
+    return options.noise ? io::add_sensor_noise(frame, options.sensor) : frame;
 }
 
 Product tonemap(const StokesImage& image, const Options& options) {
@@ -86,8 +114,7 @@ const std::vector<Operation>& operations() {
         {"tonemap", "colour as a screen shows it", tonemap},
         {"dolp", "degree of linear polarization, 0 to 1", dolp_view},
         {"aolp", "angle of linear polarization as hue over 180 degrees", aolp_view},
-        {"docp", "degree of circular polarization, left blue, right red",
-         [](const StokesImage& i, const Options& o) -> Product { return io::docp_view(plane_of(i, o)); }},
+        {"docp", "degree of circular polarization, left blue, right red", docp_view},
         {"type", "linear cyan, circular yellow (Wilkie & Weidlich 2010)",
          [](const StokesImage& i, const Options& o) -> Product { return io::type_view(plane_of(i, o)); }},
         {"chirality", "right blue, left yellow (Wilkie & Weidlich 2010)",
@@ -95,14 +122,14 @@ const std::vector<Operation>& operations() {
         {"stokes", "one component (--component) on a diverging map", stokes_view},
         {"polarizer", "through a linear polarizer at --angle-deg", through_element},
         {"waveplate", "through a retarder, fast axis at --angle-deg", through_element},
-        {"mosaic", "what a polarization camera's sensor sees (90 45 / 135 0)",
-         [](const StokesImage& i, const Options& o) -> Product { return io::polarization_mosaic(plane_of(i, o)); }},
+        {"noise", "standard error that the picture states of a component, over S0", noise_view},
+        {"mosaic", "what a polarization camera's sensor sees (90 45 / 135 0)", mosaic},
     };
     return list;
 }
 
 std::vector<std::string> operation_names() {
-    std::vector<std::string> names{"info", "diff"};
+    std::vector<std::string> names{"info", "diff", "error", "demosaic"};
     for (const Operation& operation : operations()) names.push_back(operation.name);
     return names;
 }
@@ -113,10 +140,18 @@ void write(const Product& product, const std::string& output) {
         if (exr) return io::write_stokes_exr(output, *image);
         return io::write_png(output, io::tone_map(*image));
     }
+    const Bitmap& picture = std::get<Bitmap>(product);
+    const bool frame = picture.channels == std::vector<std::string>{"Y"};
+    if (exr && frame) return io::write_exr_bitmap(output, picture);
     if (exr)
         throw Error(ErrorKind::usage,
                     fmt::format("-o {}: this operation makes a picture for the screen; name it .png", output));
-    io::write_png(output, std::get<Bitmap>(product));
+    if (!frame) return io::write_png(output, picture);
+    // A frame is data: linear, full scale where the well of an automatically exposed sensor is full.
+    Bitmap scaled = picture;
+    const float white = static_cast<float>(io::automatic_white(picture));
+    for (float& value : scaled.data) value /= white;
+    io::write_png(output, scaled, {.bits = 16, .raw = true, .text = {}});
 }
 
 int info(const Options& options, Session& session) {
@@ -141,6 +176,33 @@ int info(const Options& options, Session& session) {
                       {"largest_dolp", summary.largest_dolp},
                       {"not_finite", summary.not_finite},
                       {"metadata", image.metadata}});
+    return 0;
+}
+
+// |A - B| over S0 of B, the reference.
+int error(const Options& options, Session& session) {
+    if (options.second.empty() || options.output.empty())
+        throw Error(ErrorKind::usage, "patina image error takes a picture, a reference and -o OUT.png");
+    expect_writable(options.output);
+    const StokesImage a = io::read_stokes_exr(options.input), b = io::read_stokes_exr(options.second);
+    const std::vector<float> shares = io::relative_errors(a, b, options.component.value_or(0));
+    write(share_view(b, shares, options), options.output);
+    double mean = 0;
+    for (const float share : shares) mean += share / static_cast<double>(shares.size());
+    session.console.result(fmt::format("{}: mean relative error {:.4g}", options.output, mean));
+    session.console.document({{"schema", "patina/image-error/1"}, {"written", options.output}, {"mean", mean}});
+    return 0;
+}
+
+// A frame of a polarization camera, .exr or .png, as a Stokes picture.
+int demosaic(const Options& options, Session& session) {
+    if (options.output.empty()) throw Error(ErrorKind::usage, "patina image demosaic needs -o OUT");
+    expect_writable(options.output);
+    const StokesImage image = io::demosaic(io::read_bitmap(options.input, true));
+    write(image, options.output);
+    session.console.result(options.output);
+    session.console.document(
+        {{"schema", "patina/image/1"}, {"written", options.output}, {"operation", options.operation}});
     return 0;
 }
 
@@ -173,11 +235,13 @@ int diff(const Options& options, Session& session) {
 int run(const Options& options, Session& session) {
     if (options.operation == "info") return info(options, session);
     if (options.operation == "diff") return diff(options, session);
+    if (options.operation == "error") return error(options, session);
     const auto found = std::find_if(operations().begin(), operations().end(),
                                     [&](const Operation& operation) { return operation.name == options.operation; });
     if (found == operations().end())
         throw Error(ErrorKind::usage, fmt::format("unknown operation \"{}\" {}", options.operation,
                                                   did_you_mean(options.operation, operation_names())));
+    if (options.operation == "demosaic") return demosaic(options, session);
     if (!options.second.empty())
         throw Error(ErrorKind::usage, fmt::format("patina image {} takes one picture", options.operation));
     if (options.output.empty())
@@ -190,29 +254,56 @@ int run(const Options& options, Session& session) {
     return 0;
 }
 
+// The noise of `mosaic`; each option switches it on.
+void add_sensor_options(CLI::App& command, Options& options) {
+    const auto number = [&](const char* name, auto& target, const char* help) {
+        using Value = std::decay_t<decltype(target)>;
+        command.add_option_function<Value>(
+            name,
+            [&](const Value& value) {
+                target = value;
+                options.noise = true;
+            },
+            help);
+    };
+    number("--full-well-e", options.sensor.full_well_e, "mosaic: electrons a pixel holds (default 10500)");
+    number("--read-noise-e", options.sensor.read_noise_e, "mosaic: read noise in electrons (default 2.4)");
+    number("--bits", options.sensor.bits, "mosaic: bits of the digital numbers (default 12)");
+    number("--black-level", options.sensor.black_level_dn, "mosaic: digital number of no light (default 0)");
+    number("--white", options.sensor.white,
+           "mosaic: light behind the analyser that fills the well (default: automatic)");
+    number("--seed", options.sensor.seed, "mosaic: seed of the noise (default 0)");
+}
+
 }  // namespace
 
 void add_image(CLI::App& program, Session& session) {
     auto options = std::make_shared<Options>();
     CLI::App* command =
         program.add_subcommand("image", "pictures of polarization from a Stokes EXR, ours or Mitsuba's");
-    std::string help = "operation:\n  info        sizes, ranges and provenance\n  diff        A - B with its metrics\n";
+    std::string help =
+        "operation:\n  info        sizes, ranges and provenance\n  diff        A - B with its metrics\n"
+        "  error       |A - B| of a component over S0 of B\n"
+        "  demosaic    Stokes picture from a polarization camera's frame\n";
     for (const Operation& operation : operations())
         help += fmt::format("  {:<11} {}\n", operation.name, operation.summary);
     command->add_option("operation", options->operation, help)->required();
     command->add_option("input", options->input, "Stokes EXR")->required();
-    command->add_option("second", options->second, "second picture, for diff");
+    command->add_option("second", options->second, "second picture, for diff and error");
     command->add_option("-o,--output", options->output,
-                        "picture to write (.png, or .exr for polarizer, waveplate, diff)");
+                        "picture to write (.png, or .exr for polarizer, waveplate, diff, mosaic, demosaic)");
     command->add_option("--wavelength-nm", options->wavelength, "one spectral bin (default: luminance)")
         ->check(CLI::PositiveNumber);
     command->add_option("--angle-deg", options->angle,
                         "angle of a polarizer or fast axis, counter-clockwise from horizontal");
     command->add_option("--retardance-deg", options->retardance, "retardance of the wave plate (default 90)")
         ->check(CLI::Range(0.0, 360.0));
-    command->add_option("--component", options->component, "stokes, diff: 0 to 3")->check(CLI::Range(0, 3));
+    command->add_option("--component", options->component, "stokes, diff (default 1), error, noise (default 0)")
+        ->check(CLI::Range(0, 3));
     command->add_flag("--normalized", options->normalized, "stokes: divided by S0");
-    command->add_option("--range", options->range, "stokes: end of the colour map (default: 99.5th percentile)")
+    command
+        ->add_option("--range", options->range,
+                     "stokes, error, noise: end of the colour map (default: 99.5th percentile)")
         ->check(CLI::NonNegativeNumber);
     command->add_option("--map", options->map, "dolp: grey | viridis | inferno")
         ->check(CLI::IsMember({"grey", "viridis", "inferno"}));
@@ -225,6 +316,7 @@ void add_image(CLI::App& program, Session& session) {
                      "tonemap: scene (its lamps) | equal-energy | grey-world | none")
         ->check(CLI::IsMember({"scene", "equal-energy", "grey-world", "none"}));
     command->add_flag("--no-tone-curve", options->no_tone_curve, "tonemap: clip instead of rolling off");
+    add_sensor_options(*command, *options);
     command->callback([options, &session] { session.chosen = [options, &session] { return run(*options, session); }; });
 }
 

@@ -15,7 +15,7 @@ using coating::ReflectanceSpectra;
 using nlohmann::json;
 
 struct Options {
-    std::string recipe, wavelengths, target;
+    std::string recipe, wavelengths, target, against;
     std::vector<std::string> settings;
     double tolerance = 1e-3;
     int streams = 0;
@@ -153,6 +153,17 @@ json to_json(const Options& options, const coating::Recipe& recipe, const jobs::
                      {"streams", m.streams},
                      {"converged", m.converged},
                      {"notes", m.notes}};
+    if (report.tinting_strength) {
+        const coating::TintingStrength& strength = *report.tinting_strength;
+        document["tinting_strength"] = {{"against", options.against},
+                                        {"geometry", "films without end, d:8 excluded, Saunderson"},
+                                        {"wavelength_nm", strength.wavelength_nm},
+                                        {"at_maximum", strength.at_maximum},
+                                        {"integrated", strength.integrated},
+                                        {"delta_e_2000", strength.delta_e_2000},
+                                        {"k_over_s", strength.k_over_s},
+                                        {"k_over_s_standard", strength.k_over_s_standard}};
+    }
     if (report.target_lab)
         document["target"] = {{"lab", lab_json(*report.target_lab)},
                               {"delta_e_2000", *report.delta_e_2000},
@@ -230,6 +241,23 @@ void print_colour(const Console& console, const jobs::PaintReport& report) {
                                    (*report.target_lab)[2]));
 }
 
+void print_tinting_strength(const Console& console, const coating::TintingStrength& strength,
+                            const std::string& against) {
+    console.result("");
+    console.result(fmt::format(
+        "tinting strength    {:.1f} % of {} at {:g} nm, where it absorbs most; {:.1f} % over the wavelengths",
+        100.0 * strength.at_maximum, against, strength.wavelength_nm, 100.0 * strength.integrated));
+    console.result(
+        fmt::format("                    K/S of films without end, d:8 excluded, Saunderson (ISO 787-24); CIEDE2000 "
+                    "between them {:.2f} "
+                    "(D65, 10 deg)",
+                    strength.delta_e_2000));
+    if (strength.at_maximum > 0.0)
+        console.result(
+            fmt::format("                    of whites in the same black: relative scattering power {:.1f} %",
+                        100.0 / strength.at_maximum));
+}
+
 void print_film(const Console& console, const PaintMetrics& m) {
     const char* unit = m.thickness_is_optical ? "per optical thickness" : "per um";
     console.result("");
@@ -268,6 +296,7 @@ int run(const Options& options, Session& session) {
     request.options.wanted_contrast_ratio = options.contrast;
     request.angular = !options.quick;
     request.command = session.command_line;
+    if (!options.against.empty()) request.against = coating::read_recipe(options.against);
     if (!options.target.empty()) request.target_lab = read_target(options.target);
 
     const jobs::PaintReport report = jobs::paint(recipe, request, session.control());
@@ -278,6 +307,7 @@ int run(const Options& options, Session& session) {
     print_reflectance(console, report.metrics);
     print_colour(console, report);
     print_film(console, report.metrics);
+    if (report.tinting_strength) print_tinting_strength(console, *report.tinting_strength, options.against);
     console.document(to_json(options, recipe, report));
     console.hint(fmt::format("patina sweep {} --vary layers.{}.{}=5:80:12log -o sweep", options.recipe,
                              report.metrics.layer,
@@ -294,6 +324,8 @@ void add_paint(CLI::App& program, Session& session) {
     command->add_option("recipe", options->recipe, "paint recipe (TOML)")->required();
     command->add_option("--target", options->target,
                         "colour to compare with: L,a,b (45:0, D65, 10 deg) or a BRDF table (.h5)");
+    command->add_option("--against", options->against,
+                        "recipe of a standard: tinting strength, the ratio of K/S (ISO 787-24)");
     command->add_option("--wavelengths", options->wavelengths, "vacuum wavelengths in nm (default: 400:700:10)");
     command->add_option("--tolerance", options->tolerance, "relative accuracy wanted")
         ->check(CLI::Range(1e-8, 0.1))

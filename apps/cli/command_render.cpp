@@ -14,9 +14,9 @@ struct Options {
     std::string scene, output, integrator, time, size, crop, sensor;
     std::vector<std::string> defines, light_paths;
     int samples = 0, neumann = 0;
-    double noise = 0.0;
+    double noise = 0.0, checkpoint_every = 60.0;
     std::uint64_t seed = 0;
-    bool stokes_rgb = false, png = true;
+    bool stokes_rgb = false, png = true, resume = false, keep_checkpoint = false;
 };
 
 // "90", "90s", "5m", "1h" in seconds.
@@ -52,7 +52,14 @@ std::array<int, 4> parse_crop(const std::string& text) {
 }
 
 jobs::RenderRequest make_request(const Options& options, const CLI::App& command, const Session& session) {
-    jobs::RenderRequest request{options.scene, {}, {}, session.command_line, options.sensor};
+    jobs::RenderRequest request;
+    request.scene = options.scene;
+    request.command = session.command_line;
+    request.checkpoint = std::filesystem::path(options.output).replace_extension(".checkpoint");
+    request.checkpoint_interval_s = options.checkpoint_every;
+    request.keep_checkpoint = options.keep_checkpoint;
+    request.resume = options.resume;
+    request.sensor = options.sensor;
     for (const std::string& define : options.defines) {
         const size_t equals = define.find('=');
         if (equals == std::string::npos) throw Error(ErrorKind::usage, fmt::format("-D {}: write name=value", define));
@@ -124,6 +131,11 @@ nlohmann::json to_json(const render::Measurement& m, const StokesImage& image) {
 int run(const Options& options, const CLI::App& command, Session& session) {
     const jobs::RenderRequest request = make_request(options, command, session);
     jobs::check_picture_output(options.output);
+    const bool checkpoint_there = std::filesystem::exists(request.checkpoint);
+    if (checkpoint_there && !options.resume)
+        session.console.note(fmt::format("{} is there from a render that was stopped: --resume would go on with it",
+                                         request.checkpoint.string()));
+    if (!checkpoint_there && options.resume) session.console.note("there is no checkpoint: the render begins anew");
     const render::Pictures pictures = jobs::render_scene(request, session.control());
     const StokesImage& image = pictures.whole;
     std::vector<std::string> written = jobs::write_picture(options.output, image, options.stokes_rgb, options.png);
@@ -153,7 +165,8 @@ int run(const Options& options, const CLI::App& command, Session& session) {
     if (pictures.measurement) document["measurement"] = to_json(*pictures.measurement, image);
     console.document(document);
     if (meta("stopped") == "yes") {
-        console.note("stopped early: the picture holds the passes that were done");
+        console.note(
+            "stopped early: the picture holds the samples that were done; the same command with --resume goes on");
         return static_cast<int>(ErrorKind::interrupted);
     }
     console.hint(fmt::format("patina image dolp {} -o dolp.png", options.output));
@@ -177,6 +190,12 @@ void add_render(CLI::App& program, Session& session) {
     command->add_option("--size", options->size, "film size WIDTHxHEIGHT");
     command->add_option("--crop", options->crop, "window of pixels x0,y0,x1,y1");
     command->add_option("--seed", options->seed, "seed of the random numbers; the same seed gives the same bits");
+    command->add_flag("--resume", options->resume,
+                      "go on where a stopped render of the same picture was (OUT.checkpoint), to the same bits");
+    command->add_option("--checkpoint-every", options->checkpoint_every, "seconds between checkpoints (default 60)")
+        ->check(CLI::Range(0.01, 1e9));
+    command->add_flag("--keep-checkpoint", options->keep_checkpoint,
+                      "keep OUT.checkpoint when done, so that --resume can add samples");
     command->add_option("-D,--define", options->defines, "set a <default> of the scene: name=value (repeatable)")
         ->take_all()
         ->allow_extra_args(false);

@@ -161,12 +161,18 @@ toml::node* step_into(toml::node& node, const std::string& step) {
     return array && is_index ? array->get(std::stoul(step)) : nullptr;
 }
 
+// A word of the command line that cannot be used.
+Error bad_setting(const std::string& setting, const std::string& why) {
+    constexpr std::size_t shown = 200;
+    return Error(ErrorKind::usage, fmt::format("--set {}{}: {}", setting.substr(0, shown),
+                                               setting.size() > shown ? "..." : "", why.substr(0, shown)));
+}
+
 // Makes the assignment "path.to.key=value" in the tree; the value is TOML, or a string when it is not.
 void assign(toml::table& root, const std::string& setting) {
     const size_t equals = setting.find('=');
     if (equals == std::string::npos || equals == 0)
-        throw Error(ErrorKind::usage,
-                    fmt::format("--set {}: write key=value, as in layers.0.thickness_um=30", setting));
+        throw bad_setting(setting, "write key=value, as in layers.0.thickness_um=30");
     std::vector<std::string> steps;
     std::istringstream path(setting.substr(0, equals));
     for (std::string step; std::getline(path, step, '.');) steps.push_back(step);
@@ -174,11 +180,10 @@ void assign(toml::table& root, const std::string& setting) {
     toml::node* node = &root;
     for (size_t i = 0; i + 1 < steps.size(); ++i) {
         node = step_into(*node, steps[i]);
-        if (!node) throw Error(ErrorKind::usage, fmt::format("--set {}: the recipe has no \"{}\"", setting, steps[i]));
+        if (!node) throw bad_setting(setting, fmt::format("the recipe has no \"{}\"", steps[i]));
     }
     toml::table* parent = node->as_table();
-    if (!parent)
-        throw Error(ErrorKind::usage, fmt::format("--set {}: \"{}\" is not a key of a table", setting, steps.back()));
+    if (!parent) throw bad_setting(setting, fmt::format("\"{}\" is not a key of a table", steps.back()));
 
     // A pigment has one concentration: a new one takes the place of the old.
     if (const auto begin = std::begin(concentration_keys), end = std::end(concentration_keys);

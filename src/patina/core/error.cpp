@@ -26,11 +26,16 @@ size_t edit_distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
-// What a file holds stands in messages about it, and may be a million characters long.
-std::string shortened(std::string_view text) {
-    constexpr size_t longest = 1000, end = 100;
-    if (text.size() <= longest) return std::string(text);
-    return fmt::format("{} ... {}", text.substr(0, longest - end), text.substr(text.size() - end));
+// What a message keeps of a part: a user's word may be a million characters long.
+std::string shortened(std::string_view part) {
+    constexpr size_t longest = 1500, head = 300, tail = 100;
+    if (part.size() <= longest) return std::string(part);
+    // Characters of UTF-8 are not cut in two.
+    const auto continues = [&](size_t i) { return (static_cast<unsigned char>(part[i]) & 0xc0) == 0x80; };
+    size_t first = head, last = part.size() - tail;
+    while (first > 0 && continues(first)) --first;
+    while (last < part.size() && continues(last)) ++last;
+    return fmt::format("{} [... {} characters ...] {}", part.substr(0, first), last - first, part.substr(last));
 }
 
 std::string compose(std::string_view where, std::string_view problem, std::string_view why,

@@ -23,10 +23,9 @@ namespace patina {
 struct SpectrumSpec {
     enum class Kind {
         uniform,    // one value at every wavelength: values[0]
-        sampled,    // values at wavelengths_nm (irregular, or regular expanded to its grid)
+        sampled,    // values at wavelengths_nm (irregular, a file, or regular expanded to its grid)
         rgb,        // linear sRGB in values[0..2]
-        blackbody,  // kelvin in values[0], scale in values[1]
-        file        // a .spd or .csv file, resolved by the reader into wavelengths_nm and values
+        blackbody   // kelvin in values[0], scale in values[1]
     };
     Kind kind = Kind::uniform;
     std::vector<double> wavelengths_nm;

@@ -82,6 +82,17 @@ void expect_values(const Bitmap& image, bool signed_values) {
 
 }  // namespace
 
+void write_exr_bitmap(const fs::path& path, const Bitmap& image, const std::map<std::string, std::string>& metadata) {
+    ExrInfo info;
+    info.width = info.full_width = image.width;
+    info.height = info.full_height = image.height;
+    for (const auto& [key, value] : metadata) info.strings["patina." + key] = value;
+    std::vector<ExrPlane> planes;
+    for (std::size_t c = 0; c < image.channels.size(); ++c)
+        planes.push_back({image.channels[c], &image.data[c], nullptr, image.channels.size()});
+    write_exr(path, info, planes);
+}
+
 Bitmap read_pfm(const fs::path& path) {
     const std::string bytes = read_text_file(path);
     const SourceLocation where{path.string()};

@@ -91,6 +91,40 @@ StokesImage subtract_images(const StokesImage& a, const StokesImage& b) {
     return difference;
 }
 
+namespace {
+
+// value(pixel) over S0 of the reference, where there is light.
+template <class Value>
+std::vector<float> shares_of_intensity(const StokesPlane& reference, const Value& value) {
+    double mean = 0;
+    for (const Eigen::Vector4f& stokes : reference.pixels)
+        if (std::isfinite(stokes[0])) mean += std::abs(stokes[0]) / static_cast<double>(reference.pixels.size());
+    std::vector<float> shares;
+    for (std::size_t i = 0; i < reference.pixels.size(); ++i) {
+        const float intensity = reference.pixels[i][0];
+        shares.push_back(intensity < 1e-4 * mean || intensity == 0 ? 0.0f : value(i) / intensity);
+    }
+    return shares;
+}
+
+}  // namespace
+
+std::vector<float> relative_errors(const StokesImage& a, const StokesImage& b, int component) {
+    expect_same_size(a, b);
+    const StokesPlane first = select_band(a), second = select_band(b);
+    return shares_of_intensity(
+        second, [&](std::size_t i) { return std::abs(first.pixels[i][component] - second.pixels[i][component]); });
+}
+
+std::vector<float> relative_noise(const StokesImage& image, int component) {
+    if (image.variance.empty())
+        throw Error(ErrorKind::input,
+                    "the picture does not state its noise (no channels variance.S0 ... variance.S3; patina render "
+                    "writes them from two samples per pixel on)");
+    return shares_of_intensity(select_band(image),
+                               [&](std::size_t i) { return std::sqrt(image.variance[4 * i + component]); });
+}
+
 ImageSummary summarize_image(const StokesImage& image) {
     const StokesPlane plane = select_band(image);
     ImageSummary summary;

@@ -31,6 +31,12 @@ ImageDifference compare_images(const StokesImage& a, const StokesImage& b);
 // a - b, with the bins only when both have the same. Throws Error(input) when the sizes differ.
 StokesImage subtract_images(const StokesImage& a, const StokesImage& b);
 
+// Of one Stokes component in each pixel, by the luminance: |a - b| over S0 of the reference b, and the standard error
+// that the picture states of itself over S0. 0 where S0 is below a ten-thousandth of the picture's mean.
+// relative_errors throws Error(input) when the sizes differ, relative_noise when the picture has no variance.
+std::vector<float> relative_errors(const StokesImage& a, const StokesImage& b, int component);
+std::vector<float> relative_noise(const StokesImage& image, int component);
+
 struct ImageSummary {
     std::array<double, 4> mean{}, smallest{}, largest{};  // luminance of S0..S3
     double mean_dolp = 0;                                 // weighted with S0: |(S1, S2)| over S0, each summed

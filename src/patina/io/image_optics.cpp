@@ -49,19 +49,4 @@ StokesImage apply_mueller(StokesImage image, const Eigen::Matrix4d& mueller) {
     return image;
 }
 
-Bitmap polarization_mosaic(const StokesPlane& plane) {
-    constexpr double angles_deg[2][2] = {{90, 45}, {135, 0}};
-    Eigen::Vector4f analyser[2][2];
-    for (int row = 0; row < 2; ++row)
-        for (int column = 0; column < 2; ++column)
-            analyser[row][column] = polarizer_mueller(angles_deg[row][column]).row(0).transpose().cast<float>();
-    Bitmap sensor{"", plane.width, plane.height, {"Y"}, {}};
-    sensor.data.reserve(plane.pixels.size());
-    for (int y = 0; y < plane.height; ++y)
-        for (int x = 0; x < plane.width; ++x)
-            sensor.data.push_back(
-                analyser[y % 2][x % 2].dot(plane.pixels[static_cast<std::size_t>(y) * plane.width + x]));
-    return sensor;
-}
-
 }  // namespace patina::io

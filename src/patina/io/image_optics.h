@@ -1,13 +1,9 @@
 #pragma once
 // Optical elements in front of the camera, applied to a picture after the fact.
 
-#include <cstdint>
-
 #include <Eigen/Dense>
 
-#include "patina/core/bitmap.h"
 #include "patina/core/stokes_image.h"
-#include "patina/io/image_stokes.h"
 
 namespace patina::io {
 
@@ -25,9 +21,5 @@ Eigen::Matrix4d retarder_mueller(double fast_axis_deg, double retardance_deg);
 // Applies one matrix to every band of every pixel: an element without dispersion. The variance is dropped, for it would
 // need the covariances of the components.
 StokesImage apply_mueller(StokesImage image, const Eigen::Matrix4d& mueller);
-
-// What a polarization camera's sensor sees: every 2 x 2 block of pixels behind polarizers at 90 45 / 135 0 degrees (the
-// layout of Sony's polarization sensors). One channel, linear: half of S0 for unpolarized light.
-Bitmap polarization_mosaic(const StokesPlane& plane);
 
 }  // namespace patina::io

@@ -8,6 +8,7 @@
 #include "patina/core/error.h"
 #include "patina/io/image_compare.h"
 #include "patina/io/image_legend.h"
+#include "patina/io/image_mosaic.h"
 #include "patina/io/image_optics.h"
 #include "patina/io/image_stokes.h"
 #include "patina/io/image_tone.h"
@@ -266,6 +267,26 @@ TEST(ImageCompare, MetricsOfAKnownDifference) {
     EXPECT_EQ(by_colour.stokes[3].largest, 1);
     EXPECT_EQ(subtract_images(a, b).stokes(2, 0)[3], -1);
     EXPECT_THROW(compare_images(a, image_of({{1, 0, 0, 0}})), Error);
+}
+
+TEST(ImageViews, ErrorAndNoiseAreSharesOfTheIntensity) {
+    StokesImage a = image_of({{1.2f, 0.5f, 0, 0}, {2, 0, 0, 0}, {0, 0, 0, 0}});
+    const StokesImage b = image_of({{1, 0.4f, 0, 0}, {2, 0, 0, 0}, {0, 0, 0, 0}});
+    // 0.2 and 0.1 of S0 = 1; no light, no error.
+    const std::vector<float> error0 = relative_errors(a, b, 0), error1 = relative_errors(a, b, 1);
+    EXPECT_NEAR(error0[0], 0.2, 1e-6);
+    EXPECT_NEAR(error1[0], 0.1, 1e-6);
+    EXPECT_EQ(error0[1], 0);
+    EXPECT_EQ(error0[2], 0);
+    a.variance = {0.09f, 0.01f, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+    EXPECT_NEAR(relative_noise(a, 0)[0], 0.3 / 1.2, 1e-6);
+    EXPECT_NEAR(relative_noise(a, 1)[0], 0.1 / 1.2, 1e-6);
+    a.variance.clear();
+    EXPECT_THROW(relative_noise(a, 0), Error);
+    float range = 0;
+    const Bitmap view = share_view(a, error0, 0.2f, range);
+    EXPECT_EQ(color_at(view, 0), color_of(ColorMap::inferno, 1));
+    EXPECT_EQ(color_at(view, 1), color_of(ColorMap::inferno, 0));
 }
 
 TEST(ImageCompare, SummaryCountsWhatIsImpossible) {

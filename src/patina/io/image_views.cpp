@@ -81,4 +81,16 @@ Bitmap stokes_view(const StokesPlane& plane, int component, bool normalized, flo
     });
 }
 
+Bitmap share_view(const StokesImage& image, const std::vector<float>& values, float range, float& used_range) {
+    PATINA_EXPECT(values.size() == image.pixel_count());
+    used_range = range > 0 ? range : robust_range(values);
+    Bitmap picture{"", image.width, image.height, {"R", "G", "B"}, {}};
+    picture.data.reserve(values.size() * 3);
+    for (const float value : values) {
+        const Eigen::Vector3f rgb = color_of(ColorMap::inferno, value / used_range);
+        picture.data.insert(picture.data.end(), rgb.data(), rgb.data() + 3);
+    }
+    return picture;
+}
+
 }  // namespace patina::io

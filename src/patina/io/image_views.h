@@ -3,6 +3,8 @@
 //
 // Pixels that are not numbers are magenta, never black in silence.
 
+#include <vector>
+
 #include "patina/core/bitmap.h"
 #include "patina/io/image_colormap.h"
 #include "patina/io/image_stokes.h"
@@ -34,5 +36,8 @@ Bitmap chirality_view(const StokesPlane& plane);
 // A component on the diverging map from -range to range (S0 on inferno from 0 to range). `normalized` divides by S0.
 // A range of 0 takes the 99.5th percentile of the absolute values; `used_range` tells which it was, for the legend.
 Bitmap stokes_view(const StokesPlane& plane, int component, bool normalized, float range, float& used_range);
+
+// Numbers of 0 and above, one a pixel of the picture, on inferno from 0 to range (0: found as above).
+Bitmap share_view(const StokesImage& image, const std::vector<float>& values, float range, float& used_range);
 
 }  // namespace patina::io

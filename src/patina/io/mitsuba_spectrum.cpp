@@ -5,11 +5,27 @@
 #include <fmt/format.h>
 
 #include "patina/io/mitsuba_values.h"
-#include "patina/io/spectrum_file.h"
+#include "patina/spectral/spectrum_file.h"
 
 namespace patina::io {
 
 namespace {
+
+// Throws unless wavelengths are positive and ascend and there is one value for each.
+void expect_sampled(const SpectrumSpec& spectrum, const SourceLocation& where) {
+    const auto& wavelengths = spectrum.wavelengths_nm;
+    if (wavelengths.empty()) throw input_error(where, "the spectrum has no sample");
+    if (wavelengths.size() != spectrum.values.size())
+        throw input_error(where, fmt::format("the spectrum has {} wavelengths and {} values", wavelengths.size(),
+                                             spectrum.values.size()));
+    if (wavelengths.front() <= 0)
+        throw input_error(where, fmt::format("wavelength {} nm is not positive", wavelengths.front()));
+    for (std::size_t i = 1; i < wavelengths.size(); ++i) {
+        if (wavelengths[i] > wavelengths[i - 1]) continue;
+        throw input_error(where, fmt::format("wavelength {} nm follows {} nm", wavelengths[i], wavelengths[i - 1]),
+                          "they must ascend");
+    }
+}
 
 SpectrumSpec uniform(double value) {
     return {SpectrumSpec::Kind::uniform, {}, {value}};
@@ -170,7 +186,8 @@ SpectrumSpec read_spectrum(const Element& element, const FileResolver& resolve) 
     if (element.has("type")) return read_plugin(element);
     element.expect_no_children();
     if (element.has("value")) return read_value(element);
-    return read_spectrum_file(resolve(element.text("filename")));
+    const spectral::Spectrum file = spectral::read_spectrum(resolve(element.text("filename")), spectral::Outside::zero);
+    return {SpectrumSpec::Kind::sampled, file.wavelengths_nm(), file.values()};
 }
 
 }  // namespace patina::io

@@ -1,5 +1,6 @@
 #include "patina/io/table_hdf5_file.h"
 
+#include <fstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include "patina/core/contract.h"
 #include "patina/core/error.h"
 #include "patina/core/files.h"
+#include "patina/core/hash.h"
 
 namespace patina::io::hdf5 {
 
@@ -15,6 +17,9 @@ namespace {
 
 // More values than any table holds: a damaged header must not ask for all memory.
 constexpr hsize_t largest_value_count = hsize_t{1} << 31;
+constexpr std::size_t longest_text = std::size_t{1} << 28;
+// What deflate can make of a byte at most (RFC 1951: 258 from 2 bits).
+constexpr hsize_t largest_expansion = 1032;
 
 std::mutex& library_mutex() {
     static std::mutex mutex;
@@ -24,6 +29,14 @@ std::mutex& library_mutex() {
 // The library refuses a write in memory only when memory is short or this program asks for nonsense.
 void require(bool accepted, const std::string& what) {
     if (!accepted) throw Error(ErrorKind::runtime, fmt::format("HDF5 cannot build {} (out of memory?)", what));
+}
+
+// The library may crash on damaged files, whose old format has no checksums. It neither reads nor keeps what follows
+// the end of its own data, so that a hash can stand there: a damaged file is known before the library sees it, and a
+// file that another program changed has none.
+constexpr std::string_view seal_label = "\npatina-fnv1a-64 ";
+std::string seal_of(std::uint64_t hash) {
+    return fmt::format("{}{:016x}\n", seal_label, hash);
 }
 
 Handle text_type() {
@@ -129,16 +142,41 @@ std::string Writer::image() {
     require(size > 0, "the file");
     std::string bytes(static_cast<std::size_t>(size), '\0');
     require(H5Fget_file_image(file_, bytes.data(), bytes.size()) == size, "the file");
-    return bytes;
+    return bytes + seal_of(fnv1a_64(bytes));
 }
 
 namespace {
+
+// Throws for a sealed file whose bytes are not those that were written. A file without a seal is another program's.
+void check_seal(const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    const std::string expected = seal_of(0);
+    stream.seekg(0, std::ios::end);
+    const std::streamoff size = stream.tellg(), length = size - static_cast<std::streamoff>(expected.size());
+    if (length < 0) return;
+    std::string seal(expected.size(), '\0');
+    stream.seekg(length);
+    stream.read(seal.data(), std::ssize(seal));
+    if (!stream || !seal.starts_with(seal_label)) return;
+
+    stream.seekg(0);
+    std::uint64_t hash = fnv1a_64("");
+    std::string block(std::size_t{1} << 20, '\0');
+    for (std::streamoff left = length; left > 0 && stream; left -= stream.gcount()) {
+        stream.read(block.data(), std::min<std::streamoff>(left, std::ssize(block)));
+        hash = fnv1a_64(std::string_view(block).substr(0, static_cast<std::size_t>(stream.gcount())), hash);
+    }
+    if (seal != seal_of(hash))
+        throw input_error({path}, "the file is damaged", "its bytes are not those that were written",
+                          "make it again, or take it from a backup");
+}
 
 Handle open_file(const std::string& path) {
     // Name what is wrong with a path before the library sees it.
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) throw input_error({path}, "file not found");
     if (!std::filesystem::is_regular_file(path, ignored)) throw input_error({path}, "not a regular file");
+    check_seal(path);
     Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (!file)
         throw input_error({path}, "not a readable HDF5 file", "it is of another format, truncated or not permitted");
@@ -175,7 +213,9 @@ std::string Reader::text_attribute(const std::string& object, const std::string&
         H5free_memory(text);
         return result;
     }
-    std::string text(H5Tget_size(type), '\0');
+    const std::size_t size = H5Tget_size(type);
+    if (size > longest_text) fail(label, fmt::format("claims {} bytes", size));
+    std::string text(size, '\0');
     if (H5Aread(attribute, type, text.data()) < 0) fail(label, "cannot be read");
     return text.substr(0, text.find('\0'));
 }
@@ -210,6 +250,10 @@ Reader::Numbers Reader::numbers(const std::string& name, std::size_t rank) const
         if (extent > largest_value_count / count) fail("dataset " + name, "is larger than any table");
         count *= extent;
     }
+
+    std::error_code ignored;
+    const std::uintmax_t bytes = std::filesystem::file_size(path_, ignored);
+    if (count / largest_expansion > bytes) fail("dataset " + name, "is larger than its file can hold");
 
     result.values.resize(count);
     if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, result.values.data()) < 0)

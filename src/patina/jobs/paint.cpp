@@ -106,6 +106,12 @@ PaintReport paint(const coating::Recipe& recipe, const PaintRequest& request, co
         report.gloss = gloss(solved.table);
     }
 
+    if (request.against) {
+        coating::StackOptions stack = options.stack;
+        if (stack.streams == 0) stack.streams = report.metrics.streams;
+        report.tinting_strength = coating::tinting_strength(recipe, *request.against, stack, control);
+    }
+
     if (request.target_lab) {
         report.target_lab = request.target_lab;
         report.delta_e_2000 = spectral::delta_e_2000(

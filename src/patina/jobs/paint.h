@@ -9,6 +9,7 @@
 
 #include "patina/brdf/mueller_table.h"
 #include "patina/coating/paint_metrics.h"
+#include "patina/coating/tinting_strength.h"
 
 namespace patina::jobs {
 
@@ -16,6 +17,7 @@ struct PaintRequest {
     coating::PaintOptions options;  // wavelengths may be empty: 400 to 700 nm every 10 nm, or one without colour
     bool angular = true;            // the colours at several angles and the gloss too, which need the whole BRDF
     std::optional<Eigen::Vector3d> target_lab;  // L*a*b* for 45:0, D65 and 10 degrees
+    std::optional<coating::Recipe> against;     // the standard of the tinting strength
     std::string command;
 };
 
@@ -39,6 +41,7 @@ struct PaintReport {
     std::vector<AspecularColour> aspecular;
     std::vector<Gloss> gloss;
     std::optional<Eigen::Vector3d> target_lab;
+    std::optional<coating::TintingStrength> tinting_strength;
     std::optional<double> delta_e_2000;  // of 45:0 over the own base, D65 and 10 degrees
 };
 

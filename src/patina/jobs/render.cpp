@@ -17,6 +17,7 @@
 #include "patina/io/table_hdf5.h"
 #include "patina/io/table_merl.h"
 #include "patina/io/table_pbsdf.h"
+#include "patina/jobs/render_checkpoint.h"
 #include "patina/jobs/solve.h"
 #include "patina/version.h"
 
@@ -99,12 +100,64 @@ render::SceneResources scene_resources(std::vector<std::string>& warnings, const
     return resources;
 }
 
+namespace {
+
+// Everything that decides the picture: the scene with the files it names, solved recipes, options, the program.
+class PictureIdentity {
+  public:
+    explicit PictureIdentity(const Properties& tree) { scene_.add(tree); }
+    // Solved recipes name files of their own.
+    void watch(render::SceneResources& resources) {
+        resources.load_brdf_table = [this, load = resources.load_brdf_table](const std::string& path) {
+            const auto table = load(path);
+            if (fs::path(path).extension() == ".toml") scene_.add(*table);
+            return table;
+        };
+    }
+    RenderIdentity of(const RenderRequest& request) const {
+        RenderIdentity identity{{"the scene or a file it names", scene_.hex()},
+                                {"the program's version", PATINA_VERSION}};
+        add_options(request.options, identity);
+        if (!request.sensor.empty()) identity["--sensor"] = request.sensor;
+        return identity;
+    }
+
+  private:
+    Fingerprint scene_;
+};
+
+render::RenderCheckpoint checkpoint_of(const RenderRequest& request, const CheckpointFile& file,
+                                       std::vector<std::string>& warnings) {
+    render::RenderCheckpoint checkpoint;
+    if (request.checkpoint.empty()) return checkpoint;
+    checkpoint.interval_seconds = request.checkpoint_interval_s;
+    checkpoint.save_finished = request.keep_checkpoint;
+    if (request.resume) checkpoint.load = [&file](render::RenderState& state) { return file.load(state); };
+    checkpoint.save = [&file, &warnings](const render::RenderState& state) {
+        try {
+            file.save(state);
+        } catch (const Error& error) {
+            // The picture matters more.
+            warnings.push_back(error.what());
+        }
+    };
+    return checkpoint;
+}
+
+}  // namespace
+
 render::Pictures render_scene(const RenderRequest& request, const JobControl& control) {
     std::vector<std::string> warnings;
     const std::shared_ptr<const Properties> tree = io::read_mitsuba_scene(request.scene, request.variables);
-    const std::shared_ptr<const render::Scene> scene =
-        render::build_scene(*tree, scene_resources(warnings, control), request.sensor);
-    render::Pictures pictures = render::render_parts(*scene, request.options, control);
+    PictureIdentity identity(*tree);
+    render::SceneResources resources = scene_resources(warnings, control);
+    identity.watch(resources);
+    const std::shared_ptr<const render::Scene> scene = render::build_scene(*tree, resources, request.sensor);
+    const CheckpointFile file(request.checkpoint, identity.of(request));
+    render::Pictures pictures =
+        render::render_parts(*scene, request.options, control, checkpoint_of(request, file, warnings));
+    const bool stopped = pictures.whole.metadata.contains("stopped");
+    if (!request.checkpoint.empty() && !stopped && !request.keep_checkpoint) file.remove();
     const auto add_provenance = [&](StokesImage& image) {
         image.metadata["command"] = request.command;
         image.metadata["scene"] = request.scene.string();

@@ -18,13 +18,21 @@ struct RenderRequest {
     std::map<std::string, std::string> variables;  // values for the scene's <default> names
     std::string command;                           // for provenance
     std::string sensor;                            // of several, by id or number; "" is the first
+
+    // Where the state is kept every so often and when stopped; removed when the picture is done. Empty: nowhere.
+    std::filesystem::path checkpoint;
+    double checkpoint_interval_s = 60;
+    bool keep_checkpoint = false;  // also when the picture is done, for more samples to be added
+    bool resume = false;           // go on with what the checkpoint holds, if it is there
 };
 
 // Files for the renderer; each is loaded, and each recipe solved, once. What was repaired in a mesh is said in
 // `warnings`, which must outlive the resources.
 render::SceneResources scene_resources(std::vector<std::string>& warnings, const JobControl& control = {});
 
-// The picture, and the parts that the options ask for.
+// The picture, and the parts that the options ask for. Throws Error(input) when asked to resume the checkpoint of
+// another picture: the scene, a file it names, an option or the program's version differs. A checkpoint that cannot be
+// written is a warning in the metadata.
 render::Pictures render_scene(const RenderRequest& request, const JobControl& control = {});
 
 // Throws Error(usage) unless the name ends in .exr, before anything long is started.

@@ -10,6 +10,7 @@
 #include "patina/coating/paint_metrics_colour.h"
 #include "patina/core/error.h"
 #include "patina/core/files.h"
+#include "patina/core/hash.h"
 #include "patina/version.h"
 
 namespace patina::jobs {
@@ -50,13 +51,6 @@ json null_for_nan(double value) {
 }
 double nan_for_null(const json& value) {
     return value.is_null() ? undefined : value.get<double>();
-}
-
-// Fowler-Noll-Vo hash FNV-1a of 64 bits.
-std::uint64_t hash(std::string_view text) {
-    std::uint64_t value = 14695981039346656037ull;
-    for (const char c : text) value = (value ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-    return value;
 }
 
 // The numbers behind names and files of a recipe, at the wavelengths of interest.
@@ -171,7 +165,7 @@ std::string sweep_point_key(const coating::Recipe& recipe, const coating::PaintO
                                         fmt::join(stack.wavelengths_nm, " "), stack.tolerance, stack.streams,
                                         stack.solver, options.white_reflectance, options.wanted_contrast_ratio,
                                         Constants(recipe, stack.wavelengths_nm).text());
-    return fmt::format("{:016x}", hash(all));
+    return fmt::format("{:016x}", fnv1a_64(all));
 }
 
 void write_sweep_point(const std::filesystem::path& path, const std::string& key,

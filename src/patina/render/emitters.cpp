@@ -37,7 +37,7 @@ struct Draw {
         if (!geometry.sample_shape(e.shape, from, u, at)) return false;
         const Vec3 d = at.position - from;
         out.distance = d.norm();
-        out.direction = d / out.distance;
+        out.direction = d * (1 / out.distance);
         if (out.direction.dot(at.normal) >= 0) return false;
         out.normal = at.normal;
         out.pdf = at.pdf;

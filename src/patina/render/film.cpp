@@ -1,5 +1,7 @@
 #include "patina/render/film.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "patina/core/contract.h"
@@ -108,11 +110,12 @@ FilmSettings build_film(const Properties& node) {
     return film;
 }
 
-Film::Film(const FilmSettings& settings, const ColourMatching& matching)
-    : settings_(settings), matching_(matching), bins_(static_cast<int>(settings.bin_edges_nm.size()) - 1) {
+Film::Film(const FilmSettings& settings, const ColourMatching& matching, bool with_variance)
+    : settings_(settings), bins_(static_cast<int>(settings.bin_edges_nm.size()) - 1) {
     PATINA_EXPECT(bins_ >= 1);
     stride_ = bins_ + 5;
     sums_.assign(pixel_count() * stride_, splat(0));
+    if (with_variance) batches_.assign(pixel_count() * most_batches, splat(0));
     const std::vector<double>& edges = settings_.bin_edges_nm;
     for (int b = 0; b < bins_; ++b)
         bin_weight_.push_back(
@@ -120,18 +123,50 @@ Film::Film(const FilmSettings& settings, const ColourMatching& matching)
     for (int node = 0; node < spectrum_nodes; ++node) {
         const double nm = wavelength_min_nm + node;
         const auto upper = std::upper_bound(edges.begin(), edges.end(), nm);
-        bin_of_.push_back(static_cast<int>(upper - edges.begin()) - 1);
-        upper_edge_.push_back(upper == edges.end() || *upper > nm + 1 ? INFINITY : static_cast<float>(*upper));
+        nanometres_.push_back({0.25f * matching.xyz(node), static_cast<int>(upper - edges.begin()) - 1,
+                               upper == edges.end() || *upper > nm + 1 ? INFINITY : static_cast<float>(*upper)});
     }
+}
+
+void Film::end_batch(std::size_t pixel, int samples) {
+    Float4* colour = &sums_[pixel * stride_] + bins_;
+    Float4* ends = &batches_[pixel * most_batches];
+    // Join the batches two by two when this one is the first of twice the size.
+    int batches = static_cast<int>(colour[4][2]);
+    if (batches == most_batches) {
+        for (batches = 0; batches < most_batches / 2; ++batches) ends[batches] = ends[2 * batches + 1];
+    }
+    PATINA_ASSERT(samples == (batches + 1) * batch_size(samples));
+    ends[batches] = Float4{colour[0][1], colour[1][1], colour[2][1], colour[3][1]};
+    colour[4][2] = static_cast<float>(batches + 1);
+    colour[4][3] = colour[4][0];
+}
+
+std::array<double, 4> Film::variances_of_means(std::size_t pixel) const {
+    const Float4* colour = &sums_[pixel * stride_] + bins_;
+    const int batches = static_cast<int>(colour[4][2]);
+    if (batches < 2) return {INFINITY, INFINITY, INFINITY, INFINITY};
+    const Float4* ends = &batches_[pixel * most_batches];
+    const double samples = colour[4][0], size = colour[4][3] / batches;
+    std::array<double, 4> variances{};
+    for (int k = 0; k < 4; ++k) {
+        const double mean = ends[batches - 1][k] / (batches * size);
+        double before = 0;
+        for (int b = 0; b < batches; ++b) {
+            const double difference = (ends[b][k] - before) / size - mean;
+            variances[k] += difference * difference / (batches - 1) * size / samples;
+            before = ends[b][k];
+        }
+    }
+    return variances;
 }
 
 double Film::relative_noise() const {
     double variance = 0, luminance = 0;
     for (std::size_t pixel = 0; pixel < pixel_count(); ++pixel) {
         const Float4* colour = &sums_[pixel * stride_] + bins_;
-        const double n = colour[4][0], mean_y = colour[0][1] / n;
-        luminance += mean_y;
-        variance += n > 1 ? std::max(0.0, colour[0][3] / n - mean_y * mean_y) / (n - 1) : INFINITY;
+        luminance += static_cast<double>(colour[0][1]) / colour[4][0];
+        variance += variances_of_means(pixel)[0];
     }
     const double pixels = static_cast<double>(pixel_count());
     return luminance > 0 ? std::sqrt(variance / pixels) / (luminance / pixels) : 0.0;
@@ -148,6 +183,7 @@ StokesImage Film::develop() const {
     image.rgb.resize(pixels * 12);
     image.alpha.resize(pixels);
     image.variance.resize(pixels * 4);
+    bool spread_known = false;
     image.sample_count.resize(pixels);
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
         const Float4* sums = &sums_[pixel * stride_];
@@ -159,12 +195,15 @@ StokesImage Film::develop() const {
         for (int k = 0; k < 4; ++k) {
             const Vec3 xyz = Vec3(colour[k][0], colour[k][1], colour[k][2]) / n;
             Eigen::Map<Vec3>(image.stokes_rgb(pixel) + 3 * k) = xyz_to_srgb(xyz);
-            const float spread_y = std::max(0.0f, colour[k][3] / n - xyz.y() * xyz.y());
-            image.variance[pixel * 4 + k] = n > 1 ? spread_y / (n - 1) : 0.0f;
         }
         image.alpha[pixel] = colour[4][1] / n;
         image.sample_count[pixel] = static_cast<std::uint32_t>(n);
+        if (const std::array<double, 4> variances = variances_of_means(pixel); std::isfinite(variances[0])) {
+            for (int k = 0; k < 4; ++k) image.variance[pixel * 4 + k] = static_cast<float>(variances[k]);
+            spread_known = true;
+        }
     }
+    if (!spread_known) image.variance.clear();
     return image;
 }
 

@@ -1,6 +1,10 @@
 #pragma once
 // The film: what it is (size, window, filter, spectral bins) and the sums that samples leave on it.
 
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "patina/core/properties.h"
@@ -50,12 +54,17 @@ FilmSettings build_film(const Properties& node);
 // time.
 class Film {
   public:
-    Film(const FilmSettings& settings, const ColourMatching& matching);
+    Film(const FilmSettings& settings, const ColourMatching& matching, bool with_variance);
 
     // Adds one path: its Stokes vector at its four wavelengths.
     void add(std::size_t pixel, const StokesPacket& stokes, const Wavelengths& w, bool hit) {
         add_light(pixel, stokes, w);
         add_count(pixel, hit);
+    }
+    // Announces that a pixel's sums will be wanted soon: a film is too large for the processor's caches.
+    void prefetch(std::size_t pixel) const {
+        const Float4* sums = &sums_[pixel * stride_];
+        for (std::size_t slot = 0; slot < stride_; slot += 4) __builtin_prefetch(sums + slot, 1);
     }
     // Counts a path that brought nothing (more).
     void add_count(std::size_t pixel, bool hit) {
@@ -64,38 +73,75 @@ class Film {
     // Adds light without counting a path.
     void add_light(std::size_t pixel, const StokesPacket& stokes, const Wavelengths& w) {
         Float4* sums = &sums_[pixel * stride_];
+        StokesPacket colour{};
         const StokesPacket spectral = by_wavelength(stokes);
-        Float4 colour[4]{};
-        for (int lane = 0; lane < wavelengths_per_path; ++lane) {
-            // The mean of four wavelengths estimates the integral over the visible range; each bin takes its share.
-            const int node = w.node[lane];
-            const int bin = bin_of_[node] + (w.nm[lane] >= upper_edge_[node] ? 1 : 0);
-            const Float4 s = stokes_row(spectral, lane);
-            if (bin >= 0 && bin < bins_) sums[bin] += s * bin_weight_[bin];
-            const Float4 xyz = 0.25f * matching_.xyz(node);
-            for (int component = 0; component < 4; ++component) colour[component] += xyz * s[component];
-        }
-        for (int component = 0; component < 4; ++component) {
-            colour[component][3] = colour[component][1] * colour[component][1];
-            sums[bins_ + component] += colour[component];
-        }
+        add_wavelength<0>(sums, spectral, w, colour);
+        add_wavelength<1>(sums, spectral, w, colour);
+        add_wavelength<2>(sums, spectral, w, colour);
+        add_wavelength<3>(sums, spectral, w, colour);
+        sums[bins_] += lanes_from<0>(colour);
+        sums[bins_ + 1] += lanes_from<4>(colour);
+        sums[bins_ + 2] += lanes_from<8>(colour);
+        sums[bins_ + 3] += lanes_from<12>(colour);
     }
+
+    // Is `samples` a count of samples of a pixel after which a batch ends? There are up to `most_batches` of equal
+    // size, then they are joined two by two.
+    static bool batch_ends(int samples) { return samples % batch_size(samples) == 0; }
+    // Ends a batch, when so many samples are done: the spread of the batches' mean luminances tells the variance,
+    // whatever light came from other pixels' samples, and sees most of what stratified samples gain.
+    void end_batch(std::size_t pixel, int samples);
 
     // Root mean square over the pixels of the standard error of the luminance, over the picture's mean luminance.
     double relative_noise() const;
     StokesImage develop() const;
+    // All that the film knows, to be kept and put back. Bytes of the machine's own order.
+    std::array<std::span<std::byte>, 2> memory() {
+        return {std::as_writable_bytes(std::span(sums_)), std::as_writable_bytes(std::span(batches_))};
+    }
     std::size_t pixel_count() const { return static_cast<std::size_t>(settings_.crop_width) * settings_.crop_height; }
 
   private:
+    // What a sample within a nanometre contributes to.
+    struct Nanometre {
+        Float4 xyz;        // of a quarter of its light, for it is one of four: (X, Y, Z, 0)
+        int bin;           // at the nanometre's start, -1 before the first
+        float upper_edge;  // where the next bin begins within this nanometre, or infinity
+    };
+    template <int first>
+    static Float4 lanes_from(const StokesPacket& s) {
+        return __builtin_shufflevector(s, s, first, first + 1, first + 2, first + 3);
+    }
+    // The mean of four wavelengths estimates the integral over the visible range; each bin takes its share.
+    template <int lane>
+    void add_wavelength(Float4* sums, const StokesPacket& spectral, const Wavelengths& w, StokesPacket& colour) const {
+        constexpr int i = 4 * lane, q = i + 1, u = i + 2, v = i + 3;
+        const Nanometre& at = nanometres_[w.node[lane]];
+        const int bin = at.bin + (w.nm[lane] >= at.upper_edge ? 1 : 0);
+        if (bin >= 0 && bin < bins_) sums[bin] += lanes_from<i>(spectral) * bin_weight_[bin];
+        colour += spread(at.xyz) *
+                  __builtin_shufflevector(spectral, spectral, i, i, i, i, q, q, q, q, u, u, u, u, v, v, v, v);
+    }
+
     FilmSettings settings_;
-    const ColourMatching& matching_;
     int bins_;
     std::size_t stride_;
-    // [pixel][slot]: Stokes vector of each bin, (X, Y, Z, Y^2) of each Stokes component, (samples, hits, -, -).
+    static constexpr int most_batches = 8;
+    static int batch_size(int samples) {
+        return samples <= most_batches ? 1
+                                       : static_cast<int>(std::bit_ceil(static_cast<unsigned>(samples)) / most_batches);
+    }
+    // Variances of the mean luminances of the Stokes components; infinite before the second batch.
+    std::array<double, 4> variances_of_means(std::size_t pixel) const;
+
+    // [pixel][slot]: Stokes vector of each bin; (X, Y, Z, -) of each Stokes component; (samples, hits, batches, samples
+    // in them).
     std::vector<Float4> sums_;
+    // [pixel][batch]: Y of the Stokes components at the end of the batch, summed from the first sample on. Empty: the
+    // variance is not asked for.
+    std::vector<Float4> batches_;
     std::vector<float> bin_weight_;  // (visible range / number of wavelengths) / width of the bin
-    std::vector<int> bin_of_;        // [nanometre] bin at the nanometre's start, -1 before the first
-    std::vector<float> upper_edge_;  // [nanometre] where the next bin begins within this nanometre, or infinity
+    std::vector<Nanometre> nanometres_;
 };
 
 }  // namespace patina::render

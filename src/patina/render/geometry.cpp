@@ -24,9 +24,15 @@ void grow(Eigen::AlignedBox3f& box, const AnalyticShape& s) {
 
 void Geometry::commit() {
     Eigen::AlignedBox3f box;
-    for (const AnalyticShape& s : analytic) grow(box, s);
     for (ShapeGroup& group : groups)
-        for (int i = group.first; i < group.first + group.count; ++i) grow(group.box, group_analytic[i]);
+        for (int i = group.first; i < group.first + group.count; ++i) {
+            grow(group.box, group_analytic[i]);
+            group_analytic[i].set_frame();
+        }
+    for (AnalyticShape& s : analytic) {
+        grow(box, s);
+        s.set_frame();
+    }
     for (const MeshShape& m : meshes)
         for (const Vec3& p : m.mesh->positions) (m.group < 0 ? box : groups[m.group].box).extend(p);
     for (const Instance& instance : instances) {
@@ -40,6 +46,47 @@ void Geometry::commit() {
     brute_force_ = analytic.size() <= most_tested_one_by_one;
     if (!meshes.empty() || !instances.empty() || !brute_force_)
         embree_ = std::make_unique<EmbreeScene>(*this, brute_force_ ? std::span<const AnalyticShape>{} : analytic);
+}
+
+void Geometry::intersect(RayBlock& rays, int count, Hit* hits) const {
+    // Meet the analytic shapes, all rays at once.
+    const RayOf<WideFloat> wide = ray_components(rays);
+    WideFloat nearest = rays.t.load(), best_u{}, best_v{};
+    WideInt best = WideInt{} - 1;
+    for (int i = 0; brute_force_ && i < static_cast<int>(analytic.size()); ++i) {
+        WideFloat u{}, v{};
+        const WideFloat t = analytic[i].distance(wide, u, v);
+        const WideInt nearer = t < nearest;
+        nearest = nearer ? t : nearest;
+        best_u = nearer ? u : best_u;
+        best_v = nearer ? v : best_v;
+        best = nearer ? WideInt{} + i : best;
+    }
+    rays.t.store(nearest);
+    rays.u.store(best_u);
+    rays.v.store(best_v);
+    rays.primitive.store(best);
+    for (int k = 0; k < count; ++k) {
+        const int primitive = rays.primitive[k];
+        hits[k] = {rays.t[k], primitive < 0 ? -1 : analytic[primitive].shape, primitive, false, rays.u[k], rays.v[k]};
+    }
+
+    // Then what Embree holds, where it is nearer.
+    for (int k = 0; embree_ && k < count; ++k) embree_->intersect(rays.ray(k), hits[k]);
+}
+
+std::uint32_t Geometry::occluded(RayBlock& rays, int count) const {
+    const RayOf<WideFloat> wide = ray_components(rays);
+    const WideFloat reach = rays.t.load();
+    WideInt blocked{};
+    for (int i = 0; brute_force_ && i < static_cast<int>(analytic.size()); ++i) {
+        WideFloat u, v;
+        blocked |= analytic[i].distance(wide, u, v) < reach;
+    }
+    std::uint32_t bits = set_lanes(blocked) & ((1u << count) - 1);
+    for (int k = 0; embree_ && k < count; ++k)
+        if (!(bits >> k & 1) && embree_->occluded(rays.ray(k))) bits |= 1u << k;
+    return bits;
 }
 
 SurfacePoint Geometry::surface(const Ray& ray, const Hit& hit) const {
@@ -71,27 +118,31 @@ void Geometry::surface_of_instance(const Ray& ray, const Hit& hit, SurfacePoint&
 }
 
 void Geometry::surface_of_analytic(const AnalyticShape& s, const Ray& ray, const Hit& hit, SurfacePoint& point) const {
-    Vec3 tangent;
-    if (s.kind == AnalyticShape::Kind::sphere) {
-        // Put the point back on the sphere: the ray's own rounding grows with its length.
-        point.geometric_normal = (ray.origin + hit.t * ray.direction - s.o).normalized();
-        point.position = s.o + s.radius * point.geometric_normal;
-        const Vec3 local(s.a.dot(point.geometric_normal), s.b.dot(point.geometric_normal),
-                         s.n.dot(point.geometric_normal));
-        tangent = s.b * local.x() - s.a * local.y();
-        if (needs_uv) {
-            const float phi = std::atan2(local.y(), local.x());
-            point.uv = {(phi < 0 ? phi + 2 * pi_f : phi) * (0.5f * inv_pi_f),
-                        std::acos(std::clamp(local.z(), -1.0f, 1.0f)) * inv_pi_f};
-        }
-    } else {
+    if (s.kind != AnalyticShape::Kind::sphere) {
         point.position = s.o + hit.u * s.a + hit.v * s.b;
-        point.geometric_normal = s.n;
-        tangent = s.a;
+        point.frame = s.frame;
+        point.geometric_normal = s.frame.n;
         point.uv = {0.5f * (hit.u + 1), 0.5f * (hit.v + 1)};
+        return;
     }
-    if (s.flipped) point.geometric_normal = -point.geometric_normal;
-    point.frame = Frame(point.geometric_normal, tangent);
+    // Put the point back on the sphere: the ray's own rounding grows with its length.
+    const Vec3 outward = unit(ray.origin + hit.t * ray.direction - s.o);
+    point.position = s.o + s.radius * outward;
+    point.geometric_normal = s.flipped ? Vec3(-outward) : outward;
+    // The tangent along the circle of latitude is perpendicular to the normal as it is.
+    const float x = s.a.dot(outward), y = s.b.dot(outward), sin2 = x * x + y * y;
+    if (sin2 > 1e-20f) {
+        point.frame.n = point.geometric_normal;
+        point.frame.s = (s.b * x - s.a * y) * (1 / std::sqrt(sin2));
+        point.frame.t = point.frame.n.cross(point.frame.s);
+    } else {
+        point.frame = Frame(point.geometric_normal);
+    }
+    if (needs_uv) {
+        const float phi = std::atan2(y, x);
+        point.uv = {(phi < 0 ? phi + 2 * pi_f : phi) * (0.5f * inv_pi_f),
+                    std::acos(std::clamp(s.n.dot(outward), -1.0f, 1.0f)) * inv_pi_f};
+    }
 }
 
 void Geometry::surface_of_triangle(const Hit& hit, SurfacePoint& point) const {

@@ -86,6 +86,10 @@ class Geometry {
         return embree_ && embree_->occluded(ray);
     }
 
+    // The same for the first `count` rays of a block, one result a ray; occluded() sets bit k for ray k.
+    void intersect(RayBlock& rays, int count, Hit* hits) const;
+    std::uint32_t occluded(RayBlock& rays, int count) const;
+
     SurfacePoint surface(const Ray& ray, const Hit& hit) const;
 
     // Draws a point of a shape's outside; false when none is drawn that can be seen from `from`.

@@ -58,71 +58,89 @@ struct ScatteringMatrix {
 class Throughput {
   public:
     // A fresh path: what arrives along the camera ray is what the camera sees, in the frame with this x axis.
-    explicit Throughput(const Vec3& camera_axis) : x_axis_(camera_axis) {
-        const Float4 one = splat(1), none = splat(0);
-        columns_[0] = make_stokes(one, none, none, none);
-        columns_[1] = make_stokes(none, one, none, none);
-        columns_[2] = make_stokes(none, none, one, none);
-        columns_[3] = make_stokes(none, none, none, one);
-    }
+    explicit Throughput(const Vec3& camera_axis) : x_axis_(camera_axis) {}
 
     // Camera Stokes vector of unpolarized light of this radiance that arrives now.
-    StokesPacket of_unpolarized(Float4 radiance) const { return columns_[0] * spread(radiance); }
+    StokesPacket of_unpolarized(Float4 radiance) const {
+        if (rank_ == Rank::identity) return make_stokes(radiance, splat(0), splat(0), splat(0));
+        return columns_[0] * spread(radiance);
+    }
 
     // Camera Stokes vector of unpolarized light of this radiance sent through one more event. `outgoing` is the world
     // direction the light leaves to; the axes of `event` are in world coordinates.
     StokesPacket of_unpolarized(Float4 radiance, const ScatteringMatrix& event, const Vec3& outgoing) const {
-        const StokesPacket first = columns_[0] * spread(event.m[0]);
-        if (depolarized_ || event.form == ScatteringMatrix::Form::depolarizing) return first * spread(radiance);
-        const DoubleAngle r = rotation_between(outgoing, event.x_out, x_axis_);
-        const StokesPacket q = columns_[1] * r.cos - columns_[2] * r.sin;
-        if (event.form == ScatteringMatrix::Form::fresnel) return (first + q * spread(event.m[1])) * spread(radiance);
-        const StokesPacket u = columns_[1] * r.sin + columns_[2] * r.cos;
-        return (first + q * spread(event.m[1]) + u * spread(event.m[2]) + columns_[3] * spread(event.m[3])) *
-               spread(radiance);
+        if (rank_ == Rank::one || event.form == ScatteringMatrix::Form::depolarizing)
+            return of_unpolarized(radiance * event.m[0]);
+        const bool general = event.form == ScatteringMatrix::Form::general;
+        const Float4 zero = splat(0), u = general ? event.m[2] * radiance : zero,
+                     v = general ? event.m[3] * radiance : zero;
+        return of_polarized(event.m[0] * radiance, event.m[1] * radiance, u, v, event.x_out, outgoing);
     }
 
     // Camera Stokes vector of light that arrives now along `direction`, in the frame with this x axis.
     StokesPacket of(const StokesPacket& stokes, const Vec3& x_axis, const Vec3& direction) const {
-        const StokesPacket first = columns_[0] * spread(stokes_row(stokes, 0));
-        if (depolarized_) return first;
-        const DoubleAngle r = rotation_between(direction, x_axis, x_axis_);
-        const Float4 q = stokes_row(stokes, 1), u = stokes_row(stokes, 2);
-        return first + columns_[1] * spread(q * r.cos + u * r.sin) + columns_[2] * spread(u * r.cos - q * r.sin) +
-               columns_[3] * spread(stokes_row(stokes, 3));
+        if (rank_ == Rank::one) return columns_[0] * spread(stokes_row(stokes, 0));
+        return of_polarized(stokes_row(stokes, 0), stokes_row(stokes, 1), stokes_row(stokes, 2), stokes_row(stokes, 3),
+                            x_axis, direction);
     }
 
     // Appends an event (world axes), its weight included.
     void append(const ScatteringMatrix& event, const Vec3& outgoing) {
         if (event.form == ScatteringMatrix::Form::depolarizing) {
-            columns_[0] *= spread(event.m[0]);
-            depolarized_ = true;
+            columns_[0] = of_unpolarized(event.m[0]);
+            rank_ = Rank::one;
             return;
         }
-        if (depolarized_)
+        if (rank_ == Rank::one) {
             append_to_rank_one(event);
-        else
+        } else {
+            write_identity();
             append_to_full(event, outgoing);
+        }
         x_axis_ = event.x_in;
-        depolarized_ = false;
+        rank_ = Rank::full;
     }
 
-    void scale(float factor) {
-        for (int i = 0; i < (depolarized_ ? 1 : 4); ++i) columns_[i] *= factor;
-    }
+    void scale(float factor) { scale(splat(factor)); }
     void scale(Float4 factor) {
-        for (int i = 0; i < (depolarized_ ? 1 : 4); ++i) columns_[i] *= spread(factor);
+        write_identity();
+        for (int i = 0; i < (rank_ == Rank::one ? 1 : 4); ++i) columns_[i] *= spread(factor);
     }
     // Keeps one wavelength of four, which then stands for all of them.
-    void keep_only_hero() {
-        const Float4 weight{4, 0, 0, 0};
-        for (int i = 0; i < (depolarized_ ? 1 : 4); ++i) columns_[i] *= spread(weight);
-    }
+    void keep_only_hero() { scale(Float4{4, 0, 0, 0}); }
     // Intensity the camera sees of unpolarized light that arrives.
-    Float4 intensity() const { return stokes_row(columns_[0], 0); }
-    bool depolarized() const { return depolarized_; }
+    Float4 intensity() const { return rank_ == Rank::identity ? splat(1) : stokes_row(columns_[0], 0); }
+    bool depolarized() const { return rank_ == Rank::one; }
+    // The full matrix of one wavelength, for light in the frame with the path's present axis.
+    optics::Mueller matrix(int wavelength) const {
+        if (rank_ == Rank::identity) return optics::Mueller::Identity();
+        optics::Mueller full = optics::Mueller::Zero();
+        for (int column = 0; column < (rank_ == Rank::one ? 1 : 4); ++column)
+            for (int row = 0; row < 4; ++row) full(row, column) = columns_[column][4 * row + wavelength];
+        return full;
+    }
 
   private:
+    // identity: nothing has happened yet and the columns are not written; one: only the first column is not zero.
+    enum class Rank { identity, one, full };
+
+    void write_identity() {
+        if (rank_ != Rank::identity) return;
+        const Float4 one = splat(1), none = splat(0);
+        columns_[0] = make_stokes(one, none, none, none);
+        columns_[1] = make_stokes(none, one, none, none);
+        columns_[2] = make_stokes(none, none, one, none);
+        columns_[3] = make_stokes(none, none, none, one);
+        rank_ = Rank::full;
+    }
+    // Light (i, q, u, v) that arrives along `direction`, for a path that is not of rank one.
+    StokesPacket of_polarized(Float4 i, Float4 q, Float4 u, Float4 v, const Vec3& x_axis, const Vec3& direction) const {
+        const DoubleAngle r = rotation_between(direction, x_axis, x_axis_);
+        const Float4 turned_q = q * r.cos + u * r.sin, turned_u = u * r.cos - q * r.sin;
+        if (rank_ == Rank::identity) return make_stokes(i, turned_q, turned_u, v);
+        return columns_[0] * spread(i) + columns_[1] * spread(turned_q) + columns_[2] * spread(turned_u) +
+               columns_[3] * spread(v);
+    }
     void append_to_rank_one(const ScatteringMatrix& event) {
         const StokesPacket c0 = columns_[0], zero{};
         if (event.form == ScatteringMatrix::Form::fresnel) {
@@ -158,7 +176,7 @@ class Throughput {
 
     StokesPacket columns_[4];
     Vec3 x_axis_;
-    bool depolarized_ = false;
+    Rank rank_ = Rank::identity;
 };
 
 }  // namespace patina::render

@@ -23,13 +23,28 @@ inline Float4 splat(float x) {
     return Float4{x, x, x, x};
 }
 
+// GCC 12 widens a vector by a detour through memory, which stalls the loads that follow; hence the intrinsics below.
+
 // The same four wavelengths' factors for each of the four Stokes components.
 inline StokesPacket spread(Float4 x) {
+#if defined(__AVX512F__)
+    return (StokesPacket)_mm512_broadcast_f32x4((__m128)x);
+#else
     return __builtin_shufflevector(x, x, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3);
+#endif
 }
 
 inline Float4 stokes_row(const StokesPacket& s, int component) {
-    return Float4{s[4 * component], s[4 * component + 1], s[4 * component + 2], s[4 * component + 3]};
+    switch (component) {
+        case 0:
+            return __builtin_shufflevector(s, s, 0, 1, 2, 3);
+        case 1:
+            return __builtin_shufflevector(s, s, 4, 5, 6, 7);
+        case 2:
+            return __builtin_shufflevector(s, s, 8, 9, 10, 11);
+        default:
+            return __builtin_shufflevector(s, s, 12, 13, 14, 15);
+    }
 }
 
 // [wavelength][stokes]: the Stokes vector of each wavelength in four lanes beside each other.
@@ -38,10 +53,17 @@ inline StokesPacket by_wavelength(const StokesPacket& s) {
 }
 
 inline StokesPacket make_stokes(Float4 i, Float4 q, Float4 u, Float4 v) {
+#if defined(__AVX512F__)
+    __m512 s = _mm512_castps128_ps512((__m128)i);
+    s = _mm512_insertf32x4(s, (__m128)q, 1);
+    s = _mm512_insertf32x4(s, (__m128)u, 2);
+    return (StokesPacket)_mm512_insertf32x4(s, (__m128)v, 3);
+#else
     using Float8 = float __attribute__((vector_size(32)));
     const Float8 iq = __builtin_shufflevector(i, q, 0, 1, 2, 3, 4, 5, 6, 7);
     const Float8 uv = __builtin_shufflevector(u, v, 0, 1, 2, 3, 4, 5, 6, 7);
     return __builtin_shufflevector(iq, uv, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+#endif
 }
 
 inline Float4 sqrt(Float4 x) {

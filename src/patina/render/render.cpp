@@ -1,7 +1,7 @@
 #include "patina/render/render.h"
 
 #include <algorithm>
-#include <atomic>
+#include <bit>
 #include <chrono>
 #include <mutex>
 
@@ -20,7 +20,13 @@ namespace patina::render {
 namespace {
 
 constexpr int tile_size = 16;
+constexpr int block_size = 64;    // samples that an integrator may trace side by side
 constexpr int largest_pass = 16;  // samples per pixel between two looks at the clock and the stop sign
+
+constexpr double longest_silence_s = 2;  // without a look at the stop sign, if a sample per pixel takes no longer
+
+// Fewer samples than this tell too little of the spread to stop by it.
+constexpr int fewest_for_noise = 16;
 
 // A share of samples that are not finite above which the picture is not to be trusted.
 constexpr double tolerated_non_finite = 1e-4;
@@ -86,25 +92,27 @@ std::unique_ptr<Integrator> integrator_of(const Scene& scene, const RenderOption
 class NonFiniteSamples {
   public:
     void note(int x, int y, int sample) {
-        count_.fetch_add(1, std::memory_order_relaxed);
         const std::lock_guard lock(mutex_);
+        ++count_;
         if (places_.size() < 8) places_.push_back(fmt::format("({}, {}) sample {}", x, y, sample));
     }
-    std::int64_t count() const { return count_.load(); }
-    std::string places() const { return fmt::format("{}", fmt::join(places_, "; ")); }
+    void set(std::int64_t count, std::vector<std::string> places) {
+        count_ = count;
+        places_ = std::move(places);
+    }
+    std::int64_t count() const { return count_; }
+    const std::vector<std::string>& places() const { return places_; }
+    std::string text() const { return fmt::format("{}", fmt::join(places_, "; ")); }
 
   private:
-    std::atomic<std::int64_t> count_{0};
+    std::int64_t count_ = 0;
     std::mutex mutex_;
     std::vector<std::string> places_;
 };
 
 bool all_finite(const StokesPacket& s) {
-    // Zero times a finite number is zero, times any other it is NaN.
-    const StokesPacket probe = s * 0.0f;
-    float total = 0;
-    for (int i = 0; i < 16; ++i) total += probe[i];
-    return total == 0;
+    constexpr std::int32_t exponent = 0x7f800000;  // all ones in infinities and NaN
+    return set_lanes(((WideInt)s & exponent) == exponent) == 0;
 }
 
 // Do the sixteen numbers vanish?
@@ -146,7 +154,7 @@ class Renderer {
           integrator_(integrator_of(scene, options)),
           expressions_(expressions_of(options)),
           classes_(expressions_),
-          film_(settings_, *scene.matching),
+          film_(settings_, *scene.matching, true),
           seed_(options.seed.value_or(scene.seed)) {
         if (!expressions_.empty() && !integrator_->knows_paths())
             throw Error(ErrorKind::usage,
@@ -154,40 +162,34 @@ class Renderer {
                         "no Neumann series with it; use path or bidirectional");
         if (!scene.media.empty() && !integrator_->follows_media())
             throw Error(ErrorKind::usage, "the scene has media, which this integrator does not follow; use volumetric");
-        if (options.noise_target && integrator_->splats())
-            throw Error(ErrorKind::usage,
-                        "the noise of an integrator that begins at the lamps is not estimated while "
-                        "it runs: give --spp or --time instead of --noise");
         if (!expressions_.empty())
-            for (int c = 0; c < classes_.class_count(); ++c) class_films_.emplace_back(settings_, *scene.matching);
+            for (int c = 0; c < classes_.class_count(); ++c)
+                class_films_.emplace_back(settings_, *scene.matching, false);
         integrator_->prepare(problem(), control);
     }
 
-    // Adds the samples [first, last) to every pixel.
+    // Adds the samples [first, last) to every pixel. The sums do not depend on how the samples are shared among passes.
     void add_pass(int first, int last) {
-        const int across = (settings_.crop_width + tile_size - 1) / tile_size;
-        const int down = (settings_.crop_height + tile_size - 1) / tile_size;
-        const std::ptrdiff_t tiles = static_cast<std::ptrdiff_t>(across) * down;
-        // Splats are kept until a batch of tiles is done, and then added in the tiles' order.
-        const std::ptrdiff_t batch = integrator_->splats() ? 64 : tiles;
-        for (std::ptrdiff_t begin = 0; begin < tiles; begin += batch) {
-            const std::ptrdiff_t end = std::min(begin + batch, tiles);
-            std::vector<std::vector<Splat>> splats(integrator_->splats() ? end - begin : 0);
-            parallel_for(begin, end, [&](std::ptrdiff_t tile) {
-                PathRecord record(classes_.class_count());
-                const int x0 = static_cast<int>(tile % across) * tile_size,
-                          y0 = static_cast<int>(tile / across) * tile_size;
-                for (int y = y0; y < std::min(y0 + tile_size, settings_.crop_height); ++y)
-                    for (int x = x0; x < std::min(x0 + tile_size, settings_.crop_width); ++x)
-                        for (int sample = first; sample < last; ++sample) add_sample(x, y, sample, record);
-                if (integrator_->splats()) splats[tile - begin] = std::move(record.splats);
-            });
-            for (const auto& of_tile : splats)
-                for (const Splat& splat : of_tile) add_splat(splat);
+        if (!integrator_->splats()) return add_samples(first, last);
+        for (int sample = first; sample < last; ++sample) {
+            add_samples(sample, sample + 1);
+            if (!Film::batch_ends(sample + 1)) continue;
+            for (std::size_t pixel = 0; pixel < film_.pixel_count(); ++pixel) film_.end_batch(pixel, sample + 1);
         }
     }
     double relative_noise() const { return film_.relative_noise(); }
-    bool knows_noise() const { return !integrator_->splats(); }
+    // A view of what the samples so far have left.
+    RenderState state(int samples) {
+        RenderState state{samples, non_finite_.count(), non_finite_.places(), {}};
+        const auto add = [&](Film& film) {
+            for (const std::span<std::byte> memory : film.memory())
+                if (!memory.empty()) state.films.push_back(memory);
+        };
+        add(film_);
+        for (Film& film : class_films_) add(film);
+        return state;
+    }
+    void put_back(const RenderState& state) { non_finite_.set(state.non_finite, state.non_finite_places); }
     std::map<std::string, std::string> integrator_notes() const { return integrator_->notes(); }
     std::uint64_t seed() const { return seed_; }
     const NonFiniteSamples& non_finite() const { return non_finite_; }
@@ -195,7 +197,6 @@ class Renderer {
 
     Pictures develop() const {
         Pictures pictures{film_.develop(), {}, {}};
-        if (!knows_noise()) pictures.whole.variance.clear();
         if (expressions_.empty()) return pictures;
 
         // The whole, and each part, is the exact sum of its classes of paths.
@@ -239,43 +240,123 @@ class Renderer {
   private:
     TransportProblem problem() const { return {scene_, sensor_, classes_}; }
 
-    void add_sample(int x, int y, int sample, PathRecord& record) {
-        const int film_x = settings_.crop_x + x, film_y = settings_.crop_y + y;
-        const auto pixel = static_cast<std::uint32_t>(film_y) * static_cast<std::uint32_t>(settings_.width) +
-                           static_cast<std::uint32_t>(film_x);
-        Sampler sampler(pixel, static_cast<std::uint32_t>(sample), seed_);
-
-        // Place on the film, place on the lens, wavelengths.
-        const Vec2 offset = settings_.filter.sample(sampler.next2());
-        const Vec2 film((film_x + 0.5f + offset.x()) / settings_.width,
-                        (film_y + 0.5f + offset.y()) / settings_.height);
-        const Vec2 lens = sensor_.uses_lens() ? sampler.next2() : Vec2::Zero();
-        // The hero's quarter of the range and the place in it are drawn apart: all four wavelengths share the latter.
-        const Vec2 hue = sampler.next2();
-        const Wavelengths wavelengths = Wavelengths::sample(0.25f * (std::floor(4 * hue.y()) + hue.x()));
-
-        record.begin();
-        const std::size_t first_splat = record.splats.size();
-        Sensor::CameraRay camera = sensor_.ray(film, lens);
-        if (scene_.geometry.moves()) camera.ray.time = sampler.next();
-        integrator_->trace(problem(), camera, wavelengths, sampler, record);
-        if (sensor_.is_meter())
-            record.add(delta_light_at_sensor(scene_, sensor_, camera, wavelengths),
-                       classes_.path_class(LightPathClassifier::eye));
-        StokesPacket total = record.total(), probe = total;
-        for (std::size_t i = first_splat; i < record.splats.size(); ++i) probe += record.splats[i].stokes * 0.0f;
-        if (!all_finite(probe)) {
-            non_finite_.note(film_x, film_y, sample);
-            record.splats.resize(first_splat);
-            return;
+    void add_samples(int first, int last) {
+        const int across = (settings_.crop_width + tile_size - 1) / tile_size;
+        const int down = (settings_.crop_height + tile_size - 1) / tile_size;
+        const std::ptrdiff_t tiles = static_cast<std::ptrdiff_t>(across) * down;
+        // Splats are kept until a batch of tiles is done, and then added in the tiles' order.
+        const std::ptrdiff_t batch = integrator_->splats() ? 64 : tiles;
+        for (std::ptrdiff_t begin = 0; begin < tiles; begin += batch) {
+            const std::ptrdiff_t end = std::min(begin + batch, tiles);
+            std::vector<std::vector<Splat>> splats(integrator_->splats() ? end - begin : 0);
+            parallel_for(begin, end, [&](std::ptrdiff_t tile) {
+                SampleBlock block(classes_.class_count());
+                std::vector<Splat>* kept = integrator_->splats() ? &splats[tile - begin] : nullptr;
+                const int x0 = static_cast<int>(tile % across) * tile_size,
+                          y0 = static_cast<int>(tile / across) * tile_size;
+                for (int y = y0; y < std::min(y0 + tile_size, settings_.crop_height); ++y)
+                    for (int x = x0; x < std::min(x0 + tile_size, settings_.crop_width); ++x)
+                        for (int sample = first; sample < last; ++sample) {
+                            block.places[block.count++] = {x, y, sample};
+                            if (block.count == block_size) trace(block, kept);
+                        }
+                trace(block, kept);
+            });
+            for (const auto& of_tile : splats)
+                for (const Splat& splat : of_tile) add_splat(splat);
         }
-        const std::size_t place = static_cast<std::size_t>(y) * settings_.crop_width + x;
-        film_.add(place, total, wavelengths, record.hit);
+    }
+
+    // Samples that are traced side by side: the pixel of the window and the number of each.
+    struct SampleBlock {
+        struct Place {
+            int x, y, sample;
+        };
+        explicit SampleBlock(int classes) : records(block_size, PathRecord(classes)), samples(block_size) {}
+        int count = 0;
+        std::array<Place, block_size> places;
+        std::vector<PathRecord> records;
+        std::vector<CameraSample> samples;
+    };
+
+    std::size_t window_pixel(const SampleBlock::Place& place) const {
+        return static_cast<std::size_t>(place.y) * settings_.crop_width + place.x;
+    }
+
+    // Traces and empties a block.
+    void trace(SampleBlock& block, std::vector<Splat>* splats) {
+        for (int first = 0; first < block.count; first += wide_lanes)
+            begin_samples(block, first, std::min(first + wide_lanes, block.count));
+        integrator_->trace_block(problem(), std::span(block.samples).first(block.count));
+        for (int i = 0; i < block.count; ++i) {
+            const CameraSample& sample = block.samples[i];
+            PathRecord& record = *sample.record;
+            if (sensor_.is_meter())
+                record.add(delta_light_at_sensor(scene_, sensor_, sample.camera, sample.wavelengths),
+                           classes_.path_class(LightPathClassifier::eye));
+            const bool added = add_sample(block.places[i], record, sample.wavelengths);
+            const int done = block.places[i].sample + 1;
+            if (!splats && Film::batch_ends(done)) film_.end_batch(window_pixel(block.places[i]), done);
+            if (splats && added) splats->insert(splats->end(), record.splats.begin(), record.splats.end());
+        }
+        block.count = 0;
+    }
+
+    // Draws place on the film, place on the lens and wavelengths for up to sixteen samples.
+    void begin_samples(SampleBlock& block, int first, int last) const {
+        enum CameraDraw : std::uint32_t { on_film, on_lens, hue, camera_draws };
+        SamplerBlock draws;
+        for (int i = first; i < last; ++i) {
+            const auto& [x, y, sample] = block.places[i];
+            if (i == 0 || x != block.places[i - 1].x) film_.prefetch(window_pixel(block.places[i]));
+            const auto pixel =
+                static_cast<std::uint32_t>(settings_.crop_y + y) * static_cast<std::uint32_t>(settings_.width) +
+                static_cast<std::uint32_t>(settings_.crop_x + x);
+            block.samples[i].sampler = Sampler(pixel, static_cast<std::uint32_t>(sample), seed_);
+            draws.set(i - first, block.samples[i].sampler);
+        }
+        FloatLanes film_x, film_y, lens_x, lens_y, hue_x, hue_y;
+        draws.next2(on_film, film_x, film_y);
+        if (sensor_.uses_lens()) draws.next2(on_lens, lens_x, lens_y);
+        draws.next2(hue, hue_x, hue_y);
+        for (int i = first; i < last; ++i) {
+            const int k = i - first;
+            CameraSample& s = block.samples[i];
+            const Vec2 offset = settings_.filter.sample({film_x[k], film_y[k]});
+            film_x[k] = (settings_.crop_x + block.places[i].x + 0.5f + offset.x()) / settings_.width;
+            film_y[k] = (settings_.crop_y + block.places[i].y + 0.5f + offset.y()) / settings_.height;
+            // The hero's quarter of the range and the place in it are drawn apart: all four wavelengths share the
+            // latter.
+            s.wavelengths = Wavelengths::sample(0.25f * (std::floor(4 * hue_y[k]) + hue_x[k]));
+            s.sampler.seek(camera_draws);
+            s.record = &block.records[i];
+            s.record->begin();
+        }
+        Sensor::CameraRay rays[wide_lanes];
+        sensor_.rays(film_x, film_y, lens_x, lens_y, last - first, rays);
+        for (int i = first; i < last; ++i) {
+            block.samples[i].camera = rays[i - first];
+            if (scene_.geometry.moves()) block.samples[i].camera.ray.time = block.samples[i].sampler.next();
+        }
+    }
+
+    // False: the sample is left out, for it is not finite.
+    bool add_sample(const SampleBlock::Place& place, const PathRecord& record, const Wavelengths& wavelengths) {
+        const StokesPacket total = record.total();
+        StokesPacket probe = total;
+        for (const Splat& splat : record.splats) probe += splat.stokes * 0.0f;
+        if (!all_finite(probe)) {
+            non_finite_.note(settings_.crop_x + place.x, settings_.crop_y + place.y, place.sample);
+            return false;
+        }
+        const std::size_t pixel = window_pixel(place);
+        film_.add(pixel, total, wavelengths, record.hit);
         for (std::size_t c = 0; c < class_films_.size(); ++c) {
             const StokesPacket& stokes = record.of_class(static_cast<int>(c));
-            if (!all_zero(stokes)) class_films_[c].add_light(place, stokes, wavelengths);
-            class_films_[c].add_count(place, record.hit);
+            if (!all_zero(stokes)) class_films_[c].add_light(pixel, stokes, wavelengths);
+            class_films_[c].add_count(pixel, record.hit);
         }
+        return true;
     }
 
     // Gives each pixel of the window its share by the reconstruction filter. There is one path from the lamps for every
@@ -330,14 +411,31 @@ void note_transport_norm(const Pictures& pictures, int terms, std::map<std::stri
     if (terms > 2) metadata["neumann_norm"] = fmt::format("{:.6g}", norm);
 }
 
-// Passes grow from one sample so that a first picture, and a stop, come soon.
-int next_pass(int done, int total) {
-    return std::min({total, done + largest_pass, std::max(1, 2 * done)});
+// Passes grow from one sample so that a first picture, and a stop, come soon; they end at the same counts of samples
+// wherever a render began.
+int end_of_pass(int done, int total) {
+    const int doubled = static_cast<int>(std::bit_ceil(static_cast<unsigned>(done) + 1));
+    const int end = done < largest_pass ? doubled : (done / largest_pass + 1) * largest_pass;
+    return std::min(end, total);
+}
+
+// Puts back what a checkpoint has kept; returns its samples.
+int take_up(Renderer& renderer, const RenderCheckpoint& checkpoint, int total) {
+    RenderState state = renderer.state(0);
+    if (!checkpoint.load || !checkpoint.load(state)) return 0;
+    if (state.samples > total)
+        throw Error(ErrorKind::usage,
+                    fmt::format("the render to go on with has {} samples per pixel already, more than "
+                                "the {} asked for",
+                                state.samples, total));
+    renderer.put_back(state);
+    return state.samples;
 }
 
 }  // namespace
 
-Pictures render_parts(const Scene& scene, const RenderOptions& options, const JobControl& control) {
+Pictures render_parts(const Scene& scene, const RenderOptions& options, const JobControl& control,
+                      const RenderCheckpoint& checkpoint) {
     const int wanted = options.samples_per_pixel.value_or(scene.samples_per_pixel);
     const bool open_ended = !options.samples_per_pixel && (options.time_limit_seconds || options.noise_target);
     if (wanted < 1) throw Error(ErrorKind::usage, fmt::format("samples per pixel must be 1 or more, not {}", wanted));
@@ -348,32 +446,46 @@ Pictures render_parts(const Scene& scene, const RenderOptions& options, const Jo
     const auto elapsed = [&] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
-    int done = 0;
+    int done = take_up(renderer, checkpoint, total);
+    const int begun = done;
     bool stopped = false;
+    double saved = 0;
     while (done < total && !stopped) {
-        const int last = next_pass(done, total);
+        // Take a part of the pass when it is long, so that a stop is heard.
+        const double affordable = longest_silence_s * std::max(1, done - begun) / std::max(elapsed(), 1e-6);
+        const int pass = end_of_pass(done, total);
+        const int last = std::min<std::int64_t>(pass, done + std::int64_t(std::clamp(affordable, 1.0, 1e6)));
         renderer.add_pass(done, last);
         done = last;
         control.report({"rendering", done, open_ended ? 0 : total, fmt::format("{} spp", done)});
-        if (options.time_limit_seconds && elapsed() >= *options.time_limit_seconds) break;
-        if (options.noise_target && done >= 4 && renderer.relative_noise() <= *options.noise_target) break;
-        stopped = control.stop_requested();
+
+        // Look at the clock, at the noise and at the stop sign.
+        bool finished = done == total || (options.time_limit_seconds && elapsed() >= *options.time_limit_seconds);
+        if (options.noise_target && done == pass && done >= fewest_for_noise)
+            finished |= renderer.relative_noise() <= *options.noise_target;
+        stopped = !finished && control.stop_requested();
+        const bool due = elapsed() >= saved + checkpoint.interval_seconds;
+        if (checkpoint.save && (finished ? checkpoint.save_finished : stopped || due)) {
+            checkpoint.save(renderer.state(done));
+            saved = elapsed();
+        }
+        if (finished) break;
     }
 
     const auto non_finite = renderer.non_finite().count();
     const double samples = static_cast<double>(renderer.pixel_count()) * done;
     if (non_finite > tolerated_non_finite * samples)
         throw Error(ErrorKind::runtime, fmt::format("{} of {:.0f} samples are not finite, first at {}", non_finite,
-                                                    samples, renderer.non_finite().places()));
+                                                    samples, renderer.non_finite().text()));
     Pictures pictures = renderer.develop();
     std::map<std::string, std::string>& metadata = pictures.whole.metadata;
     metadata = scene.notes;
     metadata.merge(renderer.integrator_notes());
     metadata["samples_per_pixel"] = fmt::format("{}", done);
     metadata["seed"] = fmt::format("{}", renderer.seed());
-    if (renderer.knows_noise()) metadata["relative_noise"] = fmt::format("{:.3g}", renderer.relative_noise());
+    if (done > 1) metadata["relative_noise"] = fmt::format("{:.3g}", renderer.relative_noise());
     metadata["non_finite_samples"] =
-        non_finite ? fmt::format("{} at {}", non_finite, renderer.non_finite().places()) : "0";
+        non_finite ? fmt::format("{} at {}", non_finite, renderer.non_finite().text()) : "0";
     if (stopped) metadata["stopped"] = "yes";
     for (auto& [name, part] : pictures.parts) part.metadata.insert(metadata.begin(), metadata.end());
     renderer.calibrate(pictures);

@@ -2,9 +2,12 @@
 // The renderer's front door: a tree of plugins becomes a scene, a scene becomes a picture with polarization.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,13 +60,32 @@ struct Pictures {
     std::optional<Measurement> measurement;  // of a sensor that is a meter
 };
 
+// A render part of the way. The films are views of the renderer's own memory (bytes of the machine's order): to be
+// copied out of by who keeps the state, into by who puts it back. Films of other sizes cannot be put back.
+struct RenderState {
+    int samples = 0;  // done in every pixel
+    std::int64_t non_finite = 0;
+    std::vector<std::string> non_finite_places;  // of the first ones
+    std::vector<std::span<std::byte>> films;
+};
+
+// Where a render keeps its state, so that it can go on after a stop.
+struct RenderCheckpoint {
+    double interval_seconds = 60;
+    std::function<bool(RenderState&)> load;        // before the first sample; false: nothing was kept. Empty: none
+    std::function<void(const RenderState&)> save;  // every interval, and when JobControl asks to stop. Empty: none
+    bool save_finished = false;                    // also the last sample's, for more to be added later
+};
+
 // Renders; the same scene, options and seed give the same bits for every number of threads (time and noise limits
-// decide only after which pass to stop). When JobControl asks to stop, the passes done so far are returned with the
-// metadata "stopped" = "yes". Samples that are not finite are left out, counted and located in the metadata
-// "non_finite_samples"; more than one in 10^4 is an Error(runtime). With Neumann terms the metadata
-// "neumann_ratio_NN" are the energies in the picture of term NN + 1 over term NN, and "neumann_norm" the largest of
-// them: what one more application of the transport operator leaves of the light, as seen by this camera.
-Pictures render_parts(const Scene& scene, const RenderOptions& options, const JobControl& control = {});
+// decide only after which pass to stop), and for every number of stops on the way that a checkpoint has bridged. When
+// JobControl asks to stop, the passes done so far are returned with the metadata "stopped" = "yes". Samples that are
+// not finite are left out, counted and located in the metadata "non_finite_samples"; more than one in 10^4 is an
+// Error(runtime). With Neumann terms the metadata "neumann_ratio_NN" are the energies in the picture of term NN + 1
+// over term NN, and "neumann_norm" the largest of them: what one more application of the transport operator leaves of
+// the light, as seen by this camera.
+Pictures render_parts(const Scene& scene, const RenderOptions& options, const JobControl& control = {},
+                      const RenderCheckpoint& checkpoint = {});
 
 // The whole alone.
 StokesImage render(const Scene& scene, const RenderOptions& options, const JobControl& control = {});

@@ -18,6 +18,7 @@ DiscreteDistribution::DiscreteDistribution(std::span<const double> weights) {
 }
 
 DiscreteDistribution::Choice DiscreteDistribution::sample(float u) const {
+    if (size() == 1) return {0, 1.0f, u};
     // The last entry that begins at or before u, never one of weight zero.
     const auto upper = std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, u);
     int index = static_cast<int>(upper - cumulative_.begin()) - 1;

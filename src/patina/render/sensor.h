@@ -15,6 +15,7 @@
 #include "patina/render/geometry.h"
 #include "patina/render/measurement.h"
 #include "patina/render/vec.h"
+#include "patina/render/wide.h"
 
 namespace patina::render {
 
@@ -45,11 +46,14 @@ struct Sensor {
         const Vec3 direction((1 - 2 * film.x()) * tan_half_x, (1 - 2 * film.y()) * tan_half_y, 1);
         CameraRay result;
         result.ray.origin = origin;
-        result.ray.direction = (rotation * direction).normalized();
+        result.ray.direction = unit(rotation * direction);
         if (aperture_radius > 0) refocus(direction, lens, result.ray);
-        result.stokes_axis = result.ray.direction.cross(Vec3(rotation.col(1))).normalized();
+        result.stokes_axis = unit(result.ray.direction.cross(Vec3(rotation.col(1))));
         return result;
     }
+    // ray() for `count` places of the film side by side.
+    void rays(const FloatLanes& film_x, const FloatLanes& film_y, const FloatLanes& lens_x, const FloatLanes& lens_y,
+              int count, CameraRay* results) const;
     // ray() depends on `lens`.
     bool uses_lens() const { return aperture_radius > 0 || (kind >= Kind::irradiance && !targeted); }
     // A measuring instrument: its film has no filter.

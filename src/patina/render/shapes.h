@@ -1,7 +1,7 @@
 #pragma once
 // Shapes given by formulas: spheres, parallelograms (rectangles, faces of cubes) and elliptic disks. Exact, not meshed.
 
-#include "patina/render/vec.h"
+#include "patina/render/wide.h"
 
 namespace patina::render {
 
@@ -15,6 +15,42 @@ struct Hit {
     int instance = -1;   // through which the shape is seen; then analytic shapes are those of its group
 };
 
+// What sixteen rays met. Rays that reach nowhere (t_max < 0) meet nothing.
+struct RayBlock {
+    FloatLanes origin_x, origin_y, origin_z, direction_x, direction_y, direction_z;
+    FloatLanes t;  // as far as the ray reaches; after a query as far as the hit
+    FloatLanes u, v;
+    FloatLanes time;     // of each ray, for what moves
+    IntLanes primitive;  // analytic shape, -1: none
+
+    void set(int lane, const Ray& ray) {
+        origin_x[lane] = ray.origin.x(), origin_y[lane] = ray.origin.y(), origin_z[lane] = ray.origin.z();
+        direction_x[lane] = ray.direction.x(), direction_y[lane] = ray.direction.y();
+        direction_z[lane] = ray.direction.z();
+        t[lane] = ray.t_max;
+        time[lane] = ray.time;
+    }
+    Ray ray(int lane) const {
+        return {{origin_x[lane], origin_y[lane], origin_z[lane]},
+                {direction_x[lane], direction_y[lane], direction_z[lane]},
+                t[lane],
+                time[lane]};
+    }
+};
+
+// The rays of a block, or one ray, in registers.
+template <class F>
+struct RayOf {
+    Vec3Of<F> origin, direction;
+};
+inline RayOf<float> ray_components(const Ray& ray) {
+    return {components(ray.origin), components(ray.direction)};
+}
+inline RayOf<WideFloat> ray_components(const RayBlock& rays) {
+    return {{rays.origin_x.load(), rays.origin_y.load(), rays.origin_z.load()},
+            {rays.direction_x.load(), rays.direction_y.load(), rays.direction_z.load()}};
+}
+
 struct AnalyticShape {
     enum class Kind { sphere, parallelogram, disk };
     Kind kind = Kind::sphere;
@@ -23,6 +59,7 @@ struct AnalyticShape {
     // u^2 + v^2 <= 1, normal n = a x b normalized.
     Vec3 o, a, b, n;
     Vec3 dual_a, dual_b;  // u = dual_a . (p - o)
+    Frame frame;          // of planes, on their outside, tangent along a; Geometry::commit() sets it
     float radius = 0;
     float area = 0;
     bool flipped = false;  // the normal points the other way
@@ -31,40 +68,56 @@ struct AnalyticShape {
     // Null area is the caller's error.
     static AnalyticShape plane(Kind kind, const Vec3& centre, const Vec3& half_u, const Vec3& half_v);
 
-    // Nearest intersection in (0, t_max); updates hit (shape, primitive, u, v, t) when there is one.
+    void set_frame() {
+        if (kind != Kind::sphere) frame = Frame(flipped ? Vec3(-n) : n, a);
+    }
+
+    // Distance to the nearest intersection beyond 0, infinite when there is none; u, v of planes.
+    template <class F>
+    F distance(const RayOf<F>& ray, F& u, F& v) const {
+        return kind == Kind::sphere ? sphere_distance(ray) : plane_distance(ray, u, v);
+    }
+
+    // Nearest intersection in (0, hit.t); updates hit (shape, primitive, u, v, t) when there is one.
     bool intersect(const Ray& ray, int primitive, Hit& hit) const {
-        return kind == Kind::sphere ? intersect_sphere(ray, primitive, hit) : intersect_plane(ray, primitive, hit);
+        float u = 0, v = 0;
+        const float t = distance(ray_components(ray), u, v);
+        if (!(t < hit.t)) return false;
+        hit = {t, shape, primitive, false, u, v};
+        return true;
     }
 
   private:
-    // Haines et al. (2019), Precision improvements for ray/sphere intersection, Ray Tracing Gems ch. 7.
-    bool intersect_sphere(const Ray& ray, int primitive, Hit& hit) const {
-        const Vec3 f = ray.origin - o;
-        const float b_half = -f.dot(ray.direction);
-        const Vec3 nearest = f + b_half * ray.direction;
-        const float discriminant = radius * radius - nearest.squaredNorm();
-        if (discriminant < 0) return false;
-        const float q = b_half + std::copysign(std::sqrt(discriminant), b_half);
-        const float c = f.squaredNorm() - radius * radius;
-        const float t0 = q != 0 ? c / q : 0.0f, t1 = q;
-        const float near = std::min(t0, t1), far = std::max(t0, t1);
-        const float t = near > 0 ? near : far;
-        if (!(t > 0 && t < hit.t)) return false;
-        hit.t = t;
-        hit.shape = shape;
-        hit.primitive = primitive;
-        hit.triangle = false;
-        return true;
+    template <class F>
+    Vec3Of<F> from_centre(const RayOf<F>& ray) const {
+        return {ray.origin.x - o.x(), ray.origin.y - o.y(), ray.origin.z - o.z()};
     }
-    bool intersect_plane(const Ray& ray, int primitive, Hit& hit) const {
-        const float slope = n.dot(ray.direction);
-        const float t = n.dot(o - ray.origin) / slope;
-        if (!(t > 0 && t < hit.t)) return false;
-        const Vec3 p = ray.origin + t * ray.direction - o;
-        const float u = dual_a.dot(p), v = dual_b.dot(p);
-        if (kind == Kind::disk ? u * u + v * v > 1 : std::max(std::abs(u), std::abs(v)) > 1) return false;
-        hit = {t, shape, primitive, false, u, v};
-        return true;
+    // Haines et al. (2019), Precision improvements for ray/sphere intersection, Ray Tracing Gems ch. 7.
+    template <class F>
+    F sphere_distance(const RayOf<F>& ray) const {
+        const Vec3Of<F> f = from_centre(ray);
+        const Vec3Of<F>& d = ray.direction;
+        const F b_half = -dot(f, d);
+        const Vec3Of<F> nearest{f.x + b_half * d.x, f.y + b_half * d.y, f.z + b_half * d.z};
+        const F zero = broadcast(0.0f, b_half), none = broadcast(INFINITY, b_half);
+        const F discriminant = radius * radius - dot(nearest, nearest);
+        const F q = b_half + with_sign_of(sqrt_of(discriminant > zero ? discriminant : zero), b_half);
+        // Where q is 0 the ray touches the surface it starts on, and no comparison below holds.
+        const F other = (dot(f, f) - radius * radius) / q;
+        const F near = q < other ? q : other, far = q < other ? other : q;
+        const F t = near > zero ? near : far;
+        return discriminant >= zero ? (t > zero ? t : none) : none;
+    }
+    template <class F>
+    F plane_distance(const RayOf<F>& ray, F& u, F& v) const {
+        const Vec3Of<F> f = from_centre(ray);
+        const Vec3Of<float> normal = components(n), along_u = components(dual_a), along_v = components(dual_b);
+        const F t = -dot(normal, f) / dot(normal, ray.direction);
+        u = dot(along_u, f) + t * dot(along_u, ray.direction);
+        v = dot(along_v, f) + t * dot(along_v, ray.direction);
+        const F u2 = u * u, v2 = v * v, one = broadcast(1.0f, t), none = broadcast(INFINITY, t);
+        const F reach = kind == Kind::disk ? u2 + v2 : (u2 > v2 ? u2 : v2);
+        return reach <= one ? (t > broadcast(0.0f, t) ? t : none) : none;
     }
 };
 

@@ -24,26 +24,16 @@ struct Wavelengths {
 
     // position in [0, 1).
     static Wavelengths sample(float position) {
-        Wavelengths w;
-        for (int i = 0; i < 4; ++i) {
-            float p = position + 0.25f * static_cast<float>(i);
-            p = p >= 1.0f ? p - 1.0f : p;
-            w.set(i, wavelength_min_nm + wavelength_range_nm * p);
-        }
-        return w;
+        const Float4 p = position + Float4{0, 0.25f, 0.5f, 0.75f};
+        return at(wavelength_min_nm + wavelength_range_nm * (p >= 1.0f ? p - 1.0f : p));
     }
-    static Wavelengths all_at(float nm) {
-        Wavelengths w;
-        for (int i = 0; i < 4; ++i) w.set(i, nm);
-        return w;
-    }
+    static Wavelengths all_at(float nm) { return at(splat(nm)); }
 
   private:
-    void set(int i, float value_nm) {
-        nm[i] = value_nm;
-        const float x = value_nm - wavelength_min_nm;
-        node[i] = static_cast<int>(x);
-        fraction[i] = x - static_cast<float>(node[i]);
+    static Wavelengths at(Float4 nm) {
+        const Float4 x = nm - wavelength_min_nm;
+        const Mask4 node = __builtin_convertvector(x, Mask4);
+        return {nm, {node[0], node[1], node[2], node[3]}, x - __builtin_convertvector(node, Float4)};
     }
 };
 

@@ -21,6 +21,15 @@ inline float safe_sqrt(float x) {
     return std::sqrt(std::max(x, 0.0f));
 }
 
+// v made a unit vector; v must not vanish.
+inline Vec3 unit(const Vec3& v) {
+    return v * (1 / std::sqrt(v.squaredNorm()));
+}
+// A vector that is a unit vector but for rounding made one: a step of Newton's iteration for 1 / sqrt(v.v).
+inline Vec3 straightened(const Vec3& v) {
+    return v * (1.5f - 0.5f * v.squaredNorm());
+}
+
 // Two unit vectors that complete the unit vector n to a right-handed frame (s, t, n).
 // Duff et al. (2017), Building an orthonormal basis, revisited, J. Computer Graphics Techniques 6(1), listing 3.
 inline void orthonormal_basis(const Vec3& n, Vec3& s, Vec3& t) {
@@ -42,7 +51,7 @@ struct Frame {
         const Vec3 along = tangent - n * n.dot(tangent);
         const float length2 = along.squaredNorm();
         if (length2 > 1e-20f) {
-            s = along / std::sqrt(length2);
+            s = along * (1 / std::sqrt(length2));
             t = n.cross(s);
         } else {
             orthonormal_basis(n, s, t);
@@ -56,7 +65,7 @@ struct Frame {
 inline Vec3 common_perpendicular(const Vec3& a, const Vec3& b) {
     const Vec3 cross = a.cross(b);
     const float length2 = cross.squaredNorm();
-    if (length2 > 1e-12f) return cross / std::sqrt(length2);
+    if (length2 > 1e-12f) return cross * (1 / std::sqrt(length2));
     Vec3 s, t;
     orthonormal_basis(a, s, t);
     return s;

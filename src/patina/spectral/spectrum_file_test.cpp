@@ -17,6 +17,7 @@ TEST(SpectrumFile, ReadsSpdAndCsv) {
     EXPECT_NEAR(csv(500), 0.2, 1e-15);
     EXPECT_DOUBLE_EQ(csv(700), 0.3);
     EXPECT_DOUBLE_EQ(parse_spectrum("500,1", "a.csv", Outside::hold)(100), 1.0);
+    EXPECT_DOUBLE_EQ(parse_spectrum("500; 1\n600;2", "a.csv", Outside::hold)(550), 1.5);
 }
 
 TEST(SpectrumFile, ErrorsNameThePlace) {

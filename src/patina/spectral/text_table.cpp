@@ -19,9 +19,11 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-void split_at_commas(std::string_view line, std::vector<TextCell>& cells) {
+constexpr std::string_view separators = ",;";
+
+void split_at_separators(std::string_view line, std::vector<TextCell>& cells) {
     for (size_t begin = 0; begin <= line.size();) {
-        const size_t end = std::min(line.find(',', begin), line.size());
+        const size_t end = std::min(line.find_first_of(separators, begin), line.size());
         const std::string_view cell = trimmed(line.substr(begin, end - begin));
         const size_t column = cell.empty() ? begin : static_cast<size_t>(cell.data() - line.data());
         cells.push_back({std::string(cell), static_cast<int>(column) + 1});
@@ -67,8 +69,8 @@ TextTable split_text_table(std::string_view text) {
         if (trimmed(line).empty()) continue;
 
         TextRow row{line_number, {}};
-        if (line.find(',') != std::string_view::npos)
-            split_at_commas(line, row.cells);
+        if (line.find_first_of(separators) != std::string_view::npos)
+            split_at_separators(line, row.cells);
         else
             split_at_blanks(line, row.cells);
         table.rows.push_back(std::move(row));

@@ -1,5 +1,5 @@
 #pragma once
-// Tables of numbers in text, CSV or separated by white space, with the place of every cell for error messages.
+// Tables of numbers in text, CSV (comma or semicolon) or separated by white space, with the place of every cell for error messages.
 
 #include <string>
 #include <string_view>
@@ -24,7 +24,7 @@ struct TextTable {
     std::vector<TextRow> rows;          // lines with at least one cell
 };
 
-// Splits text into rows and cells: at commas where a line has one (cells may be empty), else at white space. A '#'
+// Splits text into rows and cells: at commas and semicolons where a line has one (cells may be empty), else at white space. A '#'
 // starts a comment that reaches to the end of the line. Accepts any line ends and a byte order mark.
 TextTable split_text_table(std::string_view text);
 

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "patina/core/progress.h"
@@ -24,6 +25,14 @@ struct TransportProblem {
     const LightPathClassifier& classes;
 };
 
+// One sample of the picture: the ray to follow and where its light goes.
+struct CameraSample {
+    Sensor::CameraRay camera;
+    Wavelengths wavelengths;
+    Sampler sampler;
+    PathRecord* record = nullptr;
+};
+
 class Integrator {
   public:
     virtual ~Integrator() = default;
@@ -33,6 +42,10 @@ class Integrator {
     // Adds one sample to the record. Its wavelengths are those of the splats as well.
     virtual void trace(const TransportProblem& problem, const Sensor::CameraRay& camera, const Wavelengths& wavelengths,
                        Sampler& sampler, PathRecord& record) const = 0;
+    // The same for several samples, which a method may trace side by side; each brings what it brings alone.
+    virtual void trace_block(const TransportProblem& problem, std::span<CameraSample> samples) const {
+        for (CameraSample& s : samples) trace(problem, s.camera, s.wavelengths, s.sampler, *s.record);
+    }
 
     // Samples write to pixels other than their own.
     virtual bool splats() const { return false; }

@@ -39,7 +39,7 @@ class Parser {
         if (text_.size() > longest_expression)
             fail(longest_expression, fmt::format("longer than {} characters", longest_expression));
         Part whole = alternatives();
-        if (at_ < text_.size()) fail(at_, text_[at_] == ')' ? "\")\" closes nothing" : unexpected());
+        if (at_ < text_.size()) fail(at_, fmt::format("\"{}\" closes nothing", text_[at_]));
         return whole;
     }
     [[noreturn]] void fail(std::size_t index, const std::string& problem) const {
@@ -53,7 +53,7 @@ class Parser {
         return at_ < text_.size() ? text_[at_] : '\0';
     }
     std::string unexpected() const {
-        return fmt::format("\"{}\" is no symbol; write L, E, D, G, S, V, . ( ) | * + ?", text_[at_]);
+        return fmt::format("\"{}\" is no symbol; write L, E, D, G, S, V, . ( ) [ ] | * + ?", text_[at_]);
     }
 
     Part alternatives() {
@@ -70,7 +70,7 @@ class Parser {
 
     Part sequence() {
         Part all = repeated();
-        while (peek() != '\0' && peek() != '|' && peek() != ')') {
+        while (peek() != '\0' && peek() != '|' && peek() != ')' && peek() != ']') {
             const Part next = repeated();
             link(all.last, next.first);
             if (all.nullable) all.first.insert(next.first.begin(), next.first.end());
@@ -95,15 +95,15 @@ class Parser {
 
     Part single() {
         const char c = peek();
-        if (c == '(') {
+        if (c == '(' || c == '[') {
             const std::size_t opening = at_++;
             Part inner = alternatives();
-            if (peek() != ')') fail(opening, "\"(\" is not closed");
+            if (peek() != (c == '(' ? ')' : ']')) fail(opening, fmt::format("\"{}\" is not closed", c));
             ++at_;
             return inner;
         }
         if (c == '\0') fail(at_, "a symbol is missing at the end");
-        if (c == '|' || c == ')' || c == '*' || c == '+' || c == '?')
+        if (c == '|' || c == ')' || c == ']' || c == '*' || c == '+' || c == '?')
             fail(at_, fmt::format("a symbol is missing before \"{}\"", c));
         if (std::string_view("LEDGSV.").find(c) == std::string_view::npos) fail(at_, unexpected());
         const int position = static_cast<int>(positions_.size());

@@ -3,11 +3,12 @@
 // them.
 //
 // Heckbert (1990), Adaptive radiosity textures for bidirectional ray tracing: L light, E eye, D diffuse, G glossy,
-// S specular (scattering_event.h); concatenation, | or, * any number, + one or more, ? one or none, ( ) grouping; here
-// also V for scattering in a medium and . for any of D, G, S, V. Blanks are skipped. An expression is written from the light, L(S|D)+DE, or from the eye,
-// ED+(S|D)L; both ends must be there. Each symbol becomes a position of a nondeterministic automaton without empty
-// moves (Glushkov 1961), and the positions of all expressions together are made deterministic by subsets (Rabin & Scott
-// 1959).
+// S specular (scattering_event.h); concatenation, | or, * any number, + one or more, ? one or none, ( ) or [ ]
+// grouping; here also V for scattering in a medium and . for any
+// of D, G, S, V. Blanks are skipped. An expression is written from the light, L(S|D)+DE, or
+// from the eye, ED+(S|D)L; both ends must be there. Each symbol becomes a position of a nondeterministic automaton
+// without empty moves (Glushkov 1961), and the positions of all expressions together are made deterministic by subsets
+// (Rabin & Scott 1959).
 
 #include <cstdint>
 #include <span>

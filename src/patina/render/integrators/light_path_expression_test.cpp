@@ -54,6 +54,10 @@ TEST(LightPathExpression, AcceptsWhatTheLecturesSay) {
     EXPECT_FALSE(accepts("ES*(D|G)L", "DS"));
     EXPECT_TRUE(accepts("E D? (S|G)* L", "DSG"));
     EXPECT_TRUE(accepts("E.*L", "DSGGSD"));
+    // Kajiya, in the brackets of the lecture.
+    EXPECT_TRUE(accepts("E[(D|G|S)+(D|G)]L", "SD"));
+    EXPECT_FALSE(accepts("E[(D|G|S)+(D|G)]L", "D"));
+    EXPECT_FALSE(accepts("E[(D|G|S)+(D|G)]L", "DGS"));
 }
 
 // The same language written from either end is the same.
@@ -70,6 +74,7 @@ TEST(LightPathExpression, RefusesWithTheColumn) {
     EXPECT_NE(refusal("L(S|DE").find("column 2: \"(\" is not closed"), std::string::npos);
     EXPECT_NE(refusal("LXE").find("column 2: \"X\" is no symbol"), std::string::npos);
     EXPECT_NE(refusal("LD)E").find("column 3: \")\" closes nothing"), std::string::npos);
+    EXPECT_NE(refusal("L[D)E").find("column 2: \"[\" is not closed"), std::string::npos);
     EXPECT_NE(refusal("L|*E").find("column 3: a symbol is missing before \"*\""), std::string::npos);
     EXPECT_NE(refusal("LDLE").find("column 3"), std::string::npos);
     EXPECT_NE(refusal("DDE").find("column 1"), std::string::npos);
@@ -77,6 +82,44 @@ TEST(LightPathExpression, RefusesWithTheColumn) {
     EXPECT_NE(refusal(std::string(10'000, '(')).find("longer than"), std::string::npos);
     // 2^n states: no hang.
     EXPECT_NE(refusal("E(D|S)*D" + std::string(200, '.') + "L").find("too complex"), std::string::npos);
+}
+
+// What the light of a point lamp met on a ball of the model: the only letter X with light in LXE.
+std::string kinds(const Node& model) {
+    const Node ball = node("shape", "sphere", {}, {model});
+    RenderOptions options;
+    options.light_paths = {{"D", "LDE"}, {"G", "LGE"}, {"S", "LSE"}};
+    const auto built = build_scene(
+        *scene({path(2), perspective(look_at({0, -4, 0}, {0, 0, 0}, {0, 0, 1}), 30, 6, 6, 4), ball,
+                node("emitter", "point", {{"position", Eigen::Vector3d(1, -4, 1)}, uniform("intensity", 1)}),
+                node("emitter", "constant", {uniform("radiance", 1)})}),
+        {});
+    std::string found;
+    for (const auto& [name, image] : render_parts(*built, options).parts)
+        if (std::any_of(image.spectral.begin(), image.spectral.end(), [](float v) { return v != 0; })) found += name;
+    return found;
+}
+
+TEST(ScatteringEvent, OfTheModels) {
+    const auto model = [](const char* type, std::vector<Value> values = {}, std::vector<Node> children = {}) {
+        return node("bsdf", type, std::move(values), std::move(children));
+    };
+    const Node matt = model("orennayar"), metal = model("roughconductor"), mirror = model("conductor");
+    EXPECT_EQ(kinds(model("diffuse")), "D");
+    EXPECT_EQ(kinds(matt), "D");
+    EXPECT_EQ(kinds(metal), "G");
+    EXPECT_EQ(kinds(mirror), "S");
+    EXPECT_EQ(kinds(model("plastic")), "DS");
+    EXPECT_EQ(kinds(model("roughplastic")), "G");  // its body and its lobe are not told apart
+    EXPECT_EQ(kinds(model("phong")), "G");
+    // Made of others.
+    EXPECT_EQ(kinds(model("twosided", {}, {matt})), "D");
+    EXPECT_EQ(kinds(model("mask", {{"opacity", 0.5}}, {matt})), "D");
+    EXPECT_EQ(kinds(model("mask", {{"opacity", 0.5}}, {metal})), "G");
+    EXPECT_EQ(kinds(model("blendbsdf", {}, {matt, model("diffuse")})), "D");
+    EXPECT_EQ(kinds(model("blendbsdf", {}, {matt, metal})), "G");
+    EXPECT_EQ(kinds(model("blendbsdf", {}, {matt, mirror})), "DS");
+    EXPECT_EQ(kinds(model("blendbsdf", {{"weight", 1.0}}, {metal, matt})), "D");
 }
 
 // A corner with a mirror, a rough metal and a diffuse floor under an area light and a constant sky.

@@ -1,40 +1,41 @@
 #include "patina/render/integrators/path.h"
 
+#include "patina/core/contract.h"
 #include "patina/render/arriving_light.h"
 #include "patina/render/mueller_packet.h"
+#include "patina/render/realizability.h"
 #include "patina/render/scene.h"
 
 namespace patina::render {
 
 namespace {
 
-// Random draws that belong to the camera, and that one vertex may take.
+// The random draws of a vertex, in this order after those that belong to the camera.
 constexpr std::uint32_t first_draw = 8, draws_per_vertex = 8;
+enum VertexDraw : std::uint32_t { light_choice, light_point, lobe_choice, lobe_direction, roulette };
 
 // One path being traced: where it is, what it carries, and how the last step was drawn.
 class PathState {
   public:
-    PathState(const TransportProblem& problem, const Sensor::CameraRay& camera, const Wavelengths& wavelengths,
-              Sampler& sampler, PathRecord& record)
+    PathState(const TransportProblem& problem, CameraSample& sample)
         : scene_(problem.scene),
           classes_(problem.classes),
-          w_(wavelengths),
-          sampler_(sampler),
-          record_(record),
-          ray_(camera.ray),
-          throughput_(camera.stokes_axis) {}
+          sample_(sample),
+          ray_(sample.camera.ray),
+          throughput_(sample.camera.stokes_axis) {}
 
-    bool find_surface() {
-        Hit hit;
-        if (!scene_.geometry.intersect(ray_, hit)) return false;
+    const Ray& ray() const { return ray_; }
+    const Sampler& sampler() const { return sample_.sampler; }
+
+    void meet(const Hit& hit) {
         hit_ = hit;
         point_ = scene_.geometry.surface(ray_, hit);
-        return true;
     }
+    void note_camera_hit(bool hit) { sample_.record->hit = hit; }
 
     // Light of the environments that the last direction ran into.
     void add_environment() {
-        scene_.lights.for_each_environment(ray_.direction, w_, [&](Float4 radiance, float light_pdf, int emitter) {
+        scene_.lights.for_each_environment(ray_.direction, w(), [&](Float4 radiance, float light_pdf, int emitter) {
             add(arriving(throughput_, scene_.lights, emitter, radiance * share_of_scattering(light_pdf),
                          -ray_.direction),
                 events_);
@@ -45,7 +46,7 @@ class PathState {
     void add_emission() {
         const int emitter = scene_.geometry.shapes[hit_.shape].emitter;
         if (emitter < 0) return;
-        const Float4 radiance = scene_.lights.surface_radiance(emitter, point_, -ray_.direction, w_);
+        const Float4 radiance = scene_.lights.surface_radiance(emitter, point_, -ray_.direction, w());
         if (largest(radiance) <= 0) return;
         const float light_pdf =
             last_delta_ ? 0.0f : scene_.lights.surface_pdf(emitter, scene_.geometry, hit_, point_, last_position_);
@@ -53,37 +54,44 @@ class PathState {
             events_);
     }
 
-    // Light of a lamp drawn at random, scattered here.
-    void add_direct_light() {
+    bool may_be_lit() const { return scene_.lights.any_sampled() && !bsdf_is_delta(bsdf(), shading_point()); }
+
+    // Draws a lamp and scatters its light here; false: none. What is added once nothing is found in the shadow ray's
+    // way.
+    bool draw_direct_light(float choice, const Vec2& u, Ray& shadow) {
         ShadingPoint shading = shading_point();
         shading.unpolarized_light = !scene_.lights.any_polarized();
-        if (!scene_.lights.any_sampled() || bsdf_is_delta(bsdf(), shading)) return;
         LightSample light;
-        const float choice = sampler_.next();
-        if (!scene_.lights.sample(scene_.geometry, point_.position, w_, choice, sampler_.next2(), light)) return;
+        if (!scene_.lights.sample(scene_.geometry, point_.position, w(), choice, u, light)) return false;
         BsdfValue value;
         const Vec3 outgoing = point_.frame.to_local(-ray_.direction), incident = point_.frame.to_local(light.direction);
-        if (!bsdf_evaluate(bsdf(), shading, outgoing, incident, value)) return;
-        if (!visible(light)) return;
+        if (!bsdf_evaluate(bsdf(), shading, outgoing, incident, value)) return false;
         const float share = light.delta ? 1.0f : power_heuristic(light.pdf, value.pdf);
         axes_to_world(value.f);
-        const int events = classes_.after(events_, continuous_event(bsdf(), shading, outgoing));
-        add(arriving(throughput_, scene_.lights, light.emitter, light.radiance * (share / light.pdf), -light.direction,
-                     value.f, -ray_.direction),
-            events);
+        direct_ = arriving(throughput_, scene_.lights, light.emitter, light.radiance * (share / light.pdf),
+                           -light.direction, value.f, -ray_.direction);
+        direct_events_ = after_continuous_event(shading, outgoing);
+        // Stop short of the lamp itself; a share of the distance covers the rounding of its position.
+        shadow = {point_.origin(light.direction), light.direction, light.distance * (1 - 1e-4f), ray_.time};
+        return true;
     }
+    void add_direct_light() { add(direct_, direct_events_); }
 
-    // Draws the next direction; false: the path ends.
-    bool scatter() {
+    // Turns into the next direction; false: the path ends.
+    bool scatter(float lobe, const Vec2& u) {
         BsdfSample sample;
-        const float lobe = sampler_.next();
         const Vec3 outgoing = point_.frame.to_local(-ray_.direction);
         const ShadingPoint shading = shading_point();
-        if (!bsdf_sample(bsdf(), shading, outgoing, lobe, sampler_.next2(), sample)) return false;
-        events_ = classes_.after(
-            events_, sample.delta ? ScatteringEvent::specular : continuous_event(bsdf(), shading, outgoing));
+        if (!bsdf_sample(bsdf(), shading, outgoing, lobe, u, sample)) return false;
+        events_ = sample.delta ? classes_.after(events_, ScatteringEvent::specular)
+                               : after_continuous_event(shading, outgoing);
         axes_to_world(sample.weight);
         throughput_.append(sample.weight, -ray_.direction);
+#ifndef NDEBUG
+        // Tables of measurements need not be realizable.
+        events_realizable_ = events_realizable_ && is_realizable(sample.weight);
+        PATINA_ASSERT(!events_realizable_ || is_realizable(throughput_));
+#endif
         if (sample.dispersed && !hero_only_) {
             hero_only_ = true;
             throughput_.keep_only_hero();
@@ -92,34 +100,34 @@ class PathState {
         last_position_ = point_.position;
         last_pdf_ = sample.pdf;
         last_delta_ = sample.delta;
-        ray_.direction = point_.frame.to_world(sample.incident).normalized();
+        ray_.direction = straightened(point_.frame.to_world(sample.incident));
         ray_.origin = point_.origin(ray_.direction);
         ray_.t_max = INFINITY;
-        return true;
+        return largest(throughput_.intensity()) > 0;
     }
 
     // Ends paths that carry little; false: ended. Radiance inside a dense medium is larger without being worth more.
-    bool survives_roulette() {
+    bool survives_roulette(float u) {
         const float carried = largest(throughput_.intensity()) * eta_ * eta_;
         const float survival = std::min(carried, 0.95f);
-        if (!(sampler_.next() < survival)) return false;
+        if (!(u < survival)) return false;
         throughput_.scale(1 / survival);
         return true;
     }
-    bool carries_light() const { return largest(throughput_.intensity()) > 0; }
 
   private:
+    const Wavelengths& w() const { return sample_.wavelengths; }
     const Bsdf& bsdf() const { return scene_.bsdfs[scene_.geometry.shapes[hit_.shape].bsdf]; }
-    ShadingPoint shading_point() const { return {&w_, point_.uv, scene_.bsdfs.data()}; }
-    void add(const StokesPacket& stokes, int events) { record_.add(stokes, classes_.path_class(events)); }
+    ShadingPoint shading_point() const { return {&w(), point_.uv, scene_.bsdfs.data()}; }
+    void add(const StokesPacket& stokes, int events) { sample_.record->add(stokes, classes_.path_class(events)); }
 
+    // The classifier's state after an event that is no delta function; where all paths are of one class it stays.
+    int after_continuous_event(const ShadingPoint& shading, const Vec3& outgoing) const {
+        if (classes_.class_count() == 1) return events_;
+        return classes_.after(events_, continuous_event(bsdf(), shading, outgoing));
+    }
     float share_of_scattering(float light_pdf) const {
         return last_delta_ || light_pdf <= 0 ? 1.0f : power_heuristic(last_pdf_, light_pdf);
-    }
-    bool visible(const LightSample& light) const {
-        // Stop short of the lamp itself; a share of the distance covers the rounding of its position.
-        Ray shadow{point_.origin(light.direction), light.direction, light.distance * (1 - 1e-4f), ray_.time};
-        return !scene_.geometry.occluded(shadow);
     }
     void axes_to_world(ScatteringMatrix& m) const {
         if (m.form == ScatteringMatrix::Form::depolarizing) return;
@@ -129,9 +137,7 @@ class PathState {
 
     const Scene& scene_;
     const LightPathClassifier& classes_;
-    const Wavelengths& w_;
-    Sampler& sampler_;
-    PathRecord& record_;
+    CameraSample& sample_;
     Ray ray_;
     Throughput throughput_;
     Hit hit_;
@@ -140,32 +146,142 @@ class PathState {
     Vec3 last_position_ = Vec3::Zero();
     float last_pdf_ = 0, eta_ = 1;
     bool last_delta_ = true, hero_only_ = false;
+    StokesPacket direct_;  // light of a lamp, if nothing is in its way
+    int direct_events_ = 0;
+#ifndef NDEBUG
+    bool events_realizable_ = true;
+#endif
+};
+
+// Paths that go on side by side: rays are cast and random numbers drawn for sixteen of them at once. What a path
+// brings depends on none but its own numbers.
+class PathBlock {
+  public:
+    PathBlock(const TransportProblem& problem, const PathIntegrator::Settings& settings,
+              std::span<CameraSample> samples)
+        : geometry_(problem.scene.geometry), settings_(settings) {
+        paths_.reserve(samples.size());
+        for (CameraSample& sample : samples) alive_.push_back(&paths_.emplace_back(problem, sample));
+    }
+
+    void trace() {
+        for (int depth = 0; !alive_.empty() && (settings_.max_depth < 0 || depth < settings_.max_depth); ++depth) {
+            find_surfaces(depth);
+            if (settings_.max_depth >= 0 && depth + 1 >= settings_.max_depth) return;
+            gather_direct_light(depth);
+            scatter(depth);
+        }
+    }
+
+  private:
+    using Paths = std::vector<PathState*>;
+
+    // Meets surfaces and sees what shines; paths that leave the scene end.
+    void find_surfaces(int depth) {
+        const bool show = depth > 0 || !settings_.hide_emitters;
+        keep_where([&](std::span<PathState*> group, std::uint32_t& alive) {
+            const int count = static_cast<int>(group.size());
+            RayBlock rays;
+            Hit hits[wide_lanes];
+            for (int k = 0; k < count; ++k) rays.set(k, group[k]->ray());
+            geometry_.intersect(rays, count, hits);
+            for (int k = 0; k < count; ++k) {
+                PathState& path = *group[k];
+                const bool found = hits[k].shape >= 0;
+                if (depth == 0) path.note_camera_hit(found);
+                if (found) {
+                    path.meet(hits[k]);
+                    if (show) path.add_emission();
+                    alive |= 1u << k;
+                } else if (show) {
+                    path.add_environment();
+                }
+            }
+        });
+    }
+
+    // Adds the light of a lamp drawn at random, scattered once.
+    void gather_direct_light(int depth) {
+        lit_.clear();
+        for (PathState* path : alive_)
+            if (path->may_be_lit()) lit_.push_back(path);
+        for_groups(lit_, [&](std::span<PathState*> group) {
+            FloatLanes choice, x, y;
+            const SamplerBlock draws = samplers(group);
+            choice.store(draws.next(draw(depth, light_choice)));
+            draws.next2(draw(depth, light_point), x, y);
+            RayBlock shadows;
+            PathState* waiting[wide_lanes];
+            int count = 0;
+            for (std::size_t k = 0; k < group.size(); ++k) {
+                Ray shadow;
+                if (!group[k]->draw_direct_light(choice[k], {x[k], y[k]}, shadow)) continue;
+                shadows.set(count, shadow);
+                waiting[count++] = group[k];
+            }
+            const std::uint32_t blocked = geometry_.occluded(shadows, count);
+            for (int k = 0; k < count; ++k)
+                if (!(blocked >> k & 1)) waiting[k]->add_direct_light();
+        });
+    }
+
+    // Draws the next directions; paths that are absorbed or carry little end.
+    void scatter(int depth) {
+        keep_where([&](std::span<PathState*> group, std::uint32_t& alive) {
+            const SamplerBlock draws = samplers(group);
+            FloatLanes lobe, x, y, fate;
+            lobe.store(draws.next(draw(depth, lobe_choice)));
+            draws.next2(draw(depth, lobe_direction), x, y);
+            const bool at_risk = depth + 1 >= settings_.rr_depth;
+            if (at_risk) fate.store(draws.next(draw(depth, roulette)));
+            for (std::size_t k = 0; k < group.size(); ++k)
+                if (group[k]->scatter(lobe[k], {x[k], y[k]}) && (!at_risk || group[k]->survives_roulette(fate[k])))
+                    alive |= 1u << k;
+        });
+    }
+
+    static std::uint32_t draw(int depth, VertexDraw which) {
+        return first_draw + draws_per_vertex * static_cast<std::uint32_t>(depth) + which;
+    }
+    static SamplerBlock samplers(std::span<PathState*> group) {
+        SamplerBlock block;
+        for (std::size_t k = 0; k < group.size(); ++k) block.set(static_cast<int>(k), group[k]->sampler());
+        return block;
+    }
+    template <class Step>
+    static void for_groups(Paths& paths, const Step& step) {
+        for (std::size_t first = 0; first < paths.size(); first += wide_lanes)
+            step(std::span(paths).subspan(first, std::min<std::size_t>(wide_lanes, paths.size() - first)));
+    }
+    // Takes a step with all living paths; it marks those of a group that go on.
+    template <class Step>
+    void keep_where(const Step& step) {
+        std::size_t kept = 0;
+        for_groups(alive_, [&](std::span<PathState*> group) {
+            std::uint32_t alive = 0;
+            step(group, alive);
+            for (std::size_t k = 0; k < group.size(); ++k)
+                if (alive >> k & 1) alive_[kept++] = group[k];
+        });
+        alive_.resize(kept);
+    }
+
+    const Geometry& geometry_;
+    const PathIntegrator::Settings& settings_;
+    std::vector<PathState> paths_;
+    Paths alive_, lit_;
 };
 
 }  // namespace
 
 void PathIntegrator::trace(const TransportProblem& problem, const Sensor::CameraRay& camera,
                            const Wavelengths& wavelengths, Sampler& sampler, PathRecord& record) const {
-    PathState path(problem, camera, wavelengths, sampler, record);
-    for (int depth = 0; settings_.max_depth < 0 || depth < settings_.max_depth; ++depth) {
-        sampler.seek(first_draw + draws_per_vertex * static_cast<std::uint32_t>(depth));
-        const bool show = depth > 0 || !settings_.hide_emitters;
+    CameraSample sample{camera, wavelengths, sampler, &record};
+    trace_block(problem, {&sample, 1});
+}
 
-        // Meet a surface, or leave the scene.
-        const bool found = path.find_surface();
-        if (depth == 0) record.hit = found;
-        if (!found) {
-            if (show) path.add_environment();
-            break;
-        }
-        if (show) path.add_emission();
-        if (settings_.max_depth >= 0 && depth + 1 >= settings_.max_depth) break;
-
-        // Gather direct light, and go on.
-        path.add_direct_light();
-        if (!path.scatter() || !path.carries_light()) break;
-        if (depth + 1 >= settings_.rr_depth && !path.survives_roulette()) break;
-    }
+void PathIntegrator::trace_block(const TransportProblem& problem, std::span<CameraSample> samples) const {
+    PathBlock(problem, settings_, samples).trace();
 }
 
 }  // namespace patina::render

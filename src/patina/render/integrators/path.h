@@ -20,6 +20,7 @@ class PathIntegrator final : public Integrator {
 
     void trace(const TransportProblem& problem, const Sensor::CameraRay& camera, const Wavelengths& wavelengths,
                Sampler& sampler, PathRecord& record) const override;
+    void trace_block(const TransportProblem& problem, std::span<CameraSample> samples) const override;
 
   private:
     Settings settings_;

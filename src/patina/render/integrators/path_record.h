@@ -24,6 +24,7 @@ class PathRecord {
     void begin() {
         for (StokesPacket& sum : sums_) sum = StokesPacket{};
         hit = false;
+        splats.clear();
     }
     void add(const StokesPacket& stokes, int path_class) { sums_[path_class] += stokes; }
     void add_splat(const Splat& splat) { splats.push_back(splat); }
