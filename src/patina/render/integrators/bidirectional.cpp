@@ -33,7 +33,9 @@ struct JoinedPath {
         const int k = static_cast<int>(places.size()) - 1;
         double sum = 1, ratio = 1;
         const auto count = [&](int t) {
-            if (possible(t)) sum += std::pow(ratio * lamp_factor(t) / lamp_factor(s), 2);
+            // Vertices that coincide have no density from either side: no other strategy counts beyond them.
+            const double density = ratio * lamp_factor(t) / lamp_factor(s);
+            if (possible(t) && !std::isnan(density)) sum += density * density;
         };
         for (int t = s + 1; t <= k; ++t) {
             ratio *= places[t - 1].from_light / places[t - 1].from_camera;

@@ -58,7 +58,7 @@ TEST(Transport, IsReciprocal) {
     const Measurements by_path = whole(measure(*there, "path", 1024));
     expect_agreement(by_path, whole(measure(*back, "path", 1024, "", 300)), "path there, path back");
     expect_agreement(by_path, whole(measure(*back, "bidirectional", 128, "", 300)), "path there, bidirectional back");
-    EXPECT_LT(relative_error(by_path), 0.02);
+    EXPECT_LT(relative_error(by_path), 0.025);
 }
 
 // Light that a polarizer and a plate have made elliptic, over two rough metal surfaces to the camera: its sense of
