@@ -6,7 +6,7 @@ import sys
 
 LAYERS = {
     "core": 0, "math": 1, "spectral": 2, "optics": 3, "rt": 4, "brdf": 4,
-    "coating": 5, "render": 5, "io": 5, "jobs": 6,
+    "render": 5, "io": 5, "coating": 6, "jobs": 7,
 }
 INCLUDE = re.compile(r'^\s*#include "patina/([a-z_]+)/')
 

@@ -1,4 +1,4 @@
-#include "command.h"
+#include "paint_options.h"
 #include <fmt/format.h>
 
 #include "patina/coating/paint_metrics_colour.h"
@@ -14,13 +14,8 @@ using coating::PaintMetrics;
 using coating::ReflectanceSpectra;
 using nlohmann::json;
 
-struct Options {
-    std::string recipe, wavelengths, target, against;
-    std::vector<std::string> settings;
-    double tolerance = 1e-3;
-    int streams = 0;
-    std::string solver = "doubling";
-    double white = 0.80, contrast = 0.98;
+struct Options : PaintCommandOptions {
+    std::string target, against;
     bool quick = false;
 };
 
@@ -287,13 +282,7 @@ Eigen::Vector3d read_target(const std::string& target) {
 int run(const Options& options, Session& session) {
     const coating::Recipe recipe = coating::read_recipe(options.recipe, options.settings);
     jobs::PaintRequest request;
-    if (!options.wavelengths.empty())
-        request.options.stack.wavelengths_nm = parse_number_list(options.wavelengths, "--wavelengths");
-    request.options.stack.tolerance = options.tolerance;
-    request.options.stack.streams = options.streams;
-    request.options.stack.solver = options.solver;
-    request.options.white_reflectance = options.white;
-    request.options.wanted_contrast_ratio = options.contrast;
+    request.options = to_paint_options(options);
     request.angular = !options.quick;
     request.command = session.command_line;
     if (!options.against.empty()) request.against = coating::read_recipe(options.against);
@@ -321,24 +310,11 @@ void add_paint(CLI::App& program, Session& session) {
     auto options = std::make_shared<Options>();
     CLI::App* command = program.add_subcommand(
         "paint", "paint metrics: contrast ratio, hiding power, colour, whiteness, Kubelka-Munk K and S, gloss");
-    command->add_option("recipe", options->recipe, "paint recipe (TOML)")->required();
+    add_paint_options(*command, *options);
     command->add_option("--target", options->target,
                         "colour to compare with: L,a,b (45:0, D65, 10 deg) or a BRDF table (.h5)");
     command->add_option("--against", options->against,
                         "recipe of a standard: tinting strength, the ratio of K/S (ISO 787-24)");
-    command->add_option("--wavelengths", options->wavelengths, "vacuum wavelengths in nm (default: 400:700:10)");
-    command->add_option("--tolerance", options->tolerance, "relative accuracy wanted")
-        ->check(CLI::Range(1e-8, 0.1))
-        ->capture_default_str();
-    command->add_option("--streams", options->streams,
-                        "quadrature nodes per hemisphere in air (default: from the tolerance)");
-    command->add_option("--solver", options->solver, "doubling | eigenmodes")->capture_default_str();
-    command->add_option("--white", options->white, "reflectance of the white card")->capture_default_str();
-    command->add_option("--contrast-ratio", options->contrast, "contrast ratio that counts as hiding")
-        ->capture_default_str();
-    command->add_option("--set", options->settings, "change a key of the recipe: layers.0.thickness_um=30 (repeatable)")
-        ->take_all()
-        ->allow_extra_args(false);
     command->add_flag("--quick", options->quick, "leave out the colours at several angles and the gloss");
     command->footer("example: patina paint examples/white_wall_paint.toml --set volume_solids=0.4");
     command->callback([options, &session] { session.chosen = [options, &session] { return run(*options, session); }; });

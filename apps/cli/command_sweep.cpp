@@ -1,4 +1,4 @@
-#include "command.h"
+#include "paint_options.h"
 #include <fmt/format.h>
 
 #include "patina/core/error.h"
@@ -10,13 +10,9 @@ namespace {
 
 using nlohmann::json;
 
-struct Options {
-    std::string recipe, folder, wavelengths;
-    std::vector<std::string> settings, vary;
-    double tolerance = 1e-3;
-    int streams = 0;
-    std::string solver = "doubling";
-    double white = 0.80, contrast = 0.98;
+struct Options : PaintCommandOptions {
+    std::string folder;
+    std::vector<std::string> vary;
 };
 
 jobs::SweepRequest make_request(const Options& options, const Session& session) {
@@ -24,13 +20,7 @@ jobs::SweepRequest make_request(const Options& options, const Session& session) 
     request.recipe = options.recipe;
     request.settings = options.settings;
     for (const std::string& axis : options.vary) request.axes.push_back(jobs::parse_sweep_axis(axis));
-    if (!options.wavelengths.empty())
-        request.options.stack.wavelengths_nm = parse_number_list(options.wavelengths, "--wavelengths");
-    request.options.stack.tolerance = options.tolerance;
-    request.options.stack.streams = options.streams;
-    request.options.stack.solver = options.solver;
-    request.options.white_reflectance = options.white;
-    request.options.wanted_contrast_ratio = options.contrast;
+    request.options = to_paint_options(options);
     request.folder = options.folder;
     request.command = session.command_line;
     return request;
@@ -92,7 +82,7 @@ void add_sweep(CLI::App& program, Session& session) {
     CLI::App* command = program.add_subcommand(
         "sweep",
         "paint metrics over a grid of recipe keys, into one HDF5 and one CSV file; goes on where it was stopped");
-    command->add_option("recipe", options->recipe, "paint recipe (TOML)")->required();
+    add_paint_options(*command, *options);
     command
         ->add_option("--vary", options->vary,
                      "KEY=begin:end:count, with log after the count for even steps of the logarithm (repeatable)")
@@ -100,19 +90,6 @@ void add_sweep(CLI::App& program, Session& session) {
         ->take_all()
         ->allow_extra_args(false);
     command->add_option("-o,--output", options->folder, "folder for the results")->required();
-    command->add_option("--wavelengths", options->wavelengths, "vacuum wavelengths in nm (default: 400:700:10)");
-    command->add_option("--tolerance", options->tolerance, "relative accuracy wanted")
-        ->check(CLI::Range(1e-8, 0.1))
-        ->capture_default_str();
-    command->add_option("--streams", options->streams,
-                        "quadrature nodes per hemisphere in air (default: from the tolerance)");
-    command->add_option("--solver", options->solver, "doubling | eigenmodes")->capture_default_str();
-    command->add_option("--white", options->white, "reflectance of the white card")->capture_default_str();
-    command->add_option("--contrast-ratio", options->contrast, "contrast ratio that counts as hiding")
-        ->capture_default_str();
-    command->add_option("--set", options->settings, "change a key of the recipe at every point (repeatable)")
-        ->take_all()
-        ->allow_extra_args(false);
     command->footer(
         "example: patina sweep examples/white_wall_paint.toml --vary layers.0.pigments.0.volume_fraction=0.02:0.35:12 "
         "-o crowding");

@@ -16,7 +16,11 @@
 #include "patina/coating/optical_problem.h"
 #include "patina/coating/scattering_csv.h"
 #include "patina/core/files.h"
+#include "patina/io/bitmap_file.h"
+#include "patina/io/mesh_file.h"
 #include "patina/io/mitsuba_xml.h"
+#include "patina/io/png_file.h"
+#include "patina/io/stokes_exr.h"
 #include "patina/io/table_hdf5.h"
 #include "patina/io/table_merl.h"
 #include "patina/io/table_pbsdf.h"
@@ -69,6 +73,8 @@ class BadInput : public ::testing::Test {
 
     // The file of a reader that takes a path.
     fs::path write(const std::string& name, const std::string& bytes) const {
+        // A new file: file systems flush one that is written over, which takes far longer than to read it.
+        fs::remove(folder_ / name);
         std::ofstream(folder_ / name, std::ios::binary) << bytes;
         return folder_ / name;
     }
@@ -133,11 +139,21 @@ bool is_cheap(const coating::Recipe& recipe) {
     return recipe.layers.size() <= 6;
 }
 
+brdf::MuellerTable small_table() {
+    return brdf::tabulate(brdf::single_rayleigh_body(1.0), {.wavelengths_nm = {450, 650}, .nodes = 3, .orders = 3});
+}
+
 TEST_F(BadInput, Recipes) {
     std::vector<std::string> texts;
     for (const char* name : {"tio2_on_aluminium", "white_wall_paint", "tinted_enamel", "external_particles",
                              "siewert_problem_IIA", "paper/fe2o3"})
         texts.push_back(source_text(fmt::format("examples/{}.toml", name)));
+    io::write_table_hdf5(small_table(), folder() / "base.h5");
+    texts.push_back(
+        "volume_solids = 0.4\n[interface]\ntype = \"rough\"\nalpha = 0.2\ndistribution = \"beckmann\"\n[[layers]]\n"
+        "thickness_um = 5\nbinder = { n = 1.5, k = 1e-3 }\n[[layers.pigments]]\nmaterial = { n = 2 }\npvc_percent = 5\n"
+        "size = { distribution = \"gamma\", weighting = \"volume\", effective_radius_um = 0.1, effective_variance = "
+        "0.1 }\n[base]\ntype = \"table\"\nfile = \"base.h5\"\nrefractive_index = 1.5\n");
     int round = 0;
     try_texts(texts, rounds(250), "recipe", [&](const std::string& text) {
         const coating::Recipe recipe = coating::parse_recipe(text, "fuzz.toml", folder());
@@ -223,10 +239,6 @@ TEST_F(BadInput, Scenes) {
     EXPECT_GT(refused, 50);
 }
 
-brdf::MuellerTable small_table() {
-    return brdf::tabulate(brdf::single_rayleigh_body(1.0), {.wavelengths_nm = {450, 650}, .nodes = 3, .orders = 3});
-}
-
 // A sealed table with any damage is refused; only what has lost its seal reaches the library.
 TEST_F(BadInput, Tables) {
     io::write_table_hdf5(small_table(), folder() / "good.h5");
@@ -247,6 +259,44 @@ TEST_F(BadInput, ExportedTables) {
     });
     EXPECT_GT(refused, 200);
     EXPECT_GT(accepted, 20);
+}
+
+TEST_F(BadInput, Meshes) {
+    const std::string obj =
+        "# o\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\nf 2 4 -2\n";
+    try_texts({obj}, rounds(300), "obj", [&](const std::string& text) { io::read_obj(write("mesh.obj", text)); });
+    const std::string head =
+        "property float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar "
+        "int vertex_indices\nend_header\n";
+    const std::string ascii = "ply\nformat ascii 1.0\nelement vertex 3\n" + head + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    try_texts({ascii}, rounds(300), "ply", [&](const std::string& text) { io::read_ply(write("mesh.ply", text)); });
+    const std::string binary = "ply\nformat binary_little_endian 1.0\nelement vertex 3\n" + head +
+                               std::string(36, '\0') + std::string("\3\0\0\0\0\1\0\0\0\2\0\0\0", 13);
+    try_binary(binary, rounds(300), "binary_ply",
+               [&](const std::string& bytes) { io::read_ply(write("mesh.ply", bytes)); });
+    EXPECT_GT(refused, 100);
+    EXPECT_GT(accepted, 30);
+}
+
+TEST_F(BadInput, Pictures) {
+    StokesImage picture;
+    picture.width = picture.full_width = 4, picture.height = picture.full_height = 3;
+    picture.bin_edges_nm = {400, 500, 600};
+    picture.spectral.assign(12 * 2 * 4, 0.5f);
+    picture.rgb.assign(12 * 12, 0.25f);
+    picture.alpha.assign(12, 1.0f);
+    io::write_stokes_exr(folder() / "good.exr", picture);
+    try_binary(read_text_file(folder() / "good.exr"), rounds(300), "exr",
+               [&](const std::string& bytes) { io::read_stokes_exr(write("picture.exr", bytes)); });
+    Bitmap bitmap{"", 2, 2, {"R", "G", "B"}, std::vector<float>(12, 0.5f)};
+    io::write_png(folder() / "good.png", bitmap);
+    try_binary(read_text_file(folder() / "good.png"), rounds(300), "png",
+               [&](const std::string& bytes) { io::read_png(write("picture.png", bytes)); });
+    const std::string pfm = "PF\n2 1\n-1.0\n" + std::string(24, '\x3f');
+    try_binary(pfm, rounds(200), "pfm", [&](const std::string& bytes) { io::read_pfm(write("picture.pfm", bytes)); });
+    const std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 8\n" + std::string(32, '\x70');
+    try_binary(hdr, rounds(200), "hdr", [&](const std::string& bytes) { io::read_hdr(write("picture.hdr", bytes)); });
+    EXPECT_GT(refused, 100);
 }
 
 // A MERL file is 33 MB of numbers after three integers: heads and sizes alone can be wrong, and a number.

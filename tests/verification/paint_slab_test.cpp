@@ -2,8 +2,6 @@
 // against the retardance of total internal reflection. With b2 flipped, V under the interface is wrong by more than
 // itself.
 
-#include <fmt/format.h>
-
 #include "patina/coating/optical_problem.h"
 #include "patina/core/constants.h"
 #include "patina/jobs/field.h"
@@ -11,24 +9,6 @@
 
 namespace patina::test {
 namespace {
-
-// f and d such that tau = 1: d f <C_ext> / <V> with <C_ext> = 0.222813 um^2 and <V> = (4/3) pi r0^3 exp(9/2 ln^2 1.3).
-std::string recipe(bool interface) {
-    const double log_sigma = std::log(1.3);
-    const double mean_volume_um3 = 4.0 / 3.0 * pi * std::pow(0.125, 3) * std::exp(4.5 * log_sigma * log_sigma);
-    const double volume_fraction = 0.01;
-    const double thickness_um = mean_volume_um3 / (volume_fraction * 0.222813);
-    return fmt::format(R"({}
-[[layers]]
-thickness_um = {:.12g}
-binder = {{ n = 1.495 }}
-[[layers.pigments]]
-material = {{ n = 2.75 }}
-volume_fraction = {}
-size = {{ distribution = "lognormal", median_radius_um = 0.125, sigma_g = 1.3 }}
-)",
-                       interface ? "[interface]\ntype = \"smooth\"\n" : "", thickness_um, volume_fraction);
-}
 
 void expect_slab(bool interface, std::span<const paint_slab::Row> rows, const std::string& solver) {
     jobs::FieldJob job;
@@ -39,7 +19,8 @@ void expect_slab(bool interface, std::span<const paint_slab::Row> rows, const st
     job.wavelength_nm = 550.0;
     job.streams = 20;
     job.solver = solver;
-    const jobs::FieldResult result = jobs::field(coating::parse_recipe(recipe(interface), "slab.toml", "."), job);
+    const jobs::FieldResult result =
+        jobs::field(coating::parse_recipe(paint_slab::recipe(interface), "slab.toml", "."), job);
 
     int compared = 0;
     for (const paint_slab::Row& row : rows)

@@ -203,7 +203,7 @@ TEST(Meters, DoNotDependOnTheIntegrator) {
     const Node distant = meter("distant", {{"direction", Vector3d(1, 0, -1)}});
     const auto tree = scene({path(5), far, distant, gold, lamp, floor});
     for (const char* sensor : {"0", "1", "2"}) {
-        const Measurement a = read(tree, "path", 300, sensor), b = read(tree, "light", 300, sensor),
+        const Measurement a = read(tree, "path", 350, sensor), b = read(tree, "light", 300, sensor),
                           c = read(tree, "bidirectional", 150, sensor);
         // Three and a half standard errors of a difference, were the others no better than the path tracer's.
         const double allowed = 5 * a.standard_error / a.photometric[0];

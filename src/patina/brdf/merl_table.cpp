@@ -17,8 +17,13 @@ namespace {
 class RgbIntensity {
   public:
     RgbIntensity(const MuellerTable& table, const Eigen::Matrix3Xd& weights)
-        : nodes_(Eigen::VectorXd::Map(table.mu.data(), static_cast<Eigen::Index>(table.mu.size()))),
+        : weights_(weights),
+          nodes_(Eigen::VectorXd::Map(table.mu.data(), static_cast<Eigen::Index>(table.mu.size()))),
           interpolation_(table.mu) {
+        for (std::size_t w = 0; w < table.once_scattered.size(); ++w)
+            for (const OnceScattered& layer : table.once_scattered[w])
+                once_scattered_.emplace_back(static_cast<Eigen::Index>(w),
+                                             OnceScatteredLight(layer, table.specular_theta_deg, 1'000'000));
         std::size_t orders = 0;
         for (const BodyModes& body : table.body) orders = std::max(orders, body.modes.size());
         const auto n = static_cast<Eigen::Index>(nodes_.size());
@@ -43,10 +48,13 @@ class RgbIntensity {
                 result[color] +=
                     factor * (m % 2 == 0 ? even_o.dot(modes_[color][m] * even_i) : odd_o.dot(modes_[color][m] * odd_i));
         }
+        for (const auto& [w, light] : once_scattered_) result += weights_.col(w) * light(mu_o, mu_i, phi)(0, 0);
         return result;
     }
 
   private:
+    const Eigen::Matrix3Xd& weights_;
+    std::vector<std::pair<Eigen::Index, OnceScatteredLight>> once_scattered_;  // with their wavelength
     Eigen::VectorXd nodes_;
     BarycentricInterpolation interpolation_;
     std::vector<std::vector<Eigen::MatrixXd>> modes_;  // [color][m] (N x N)

@@ -8,6 +8,7 @@
 #include "patina/brdf/interpolation.h"
 #include "patina/core/constants.h"
 #include "patina/core/contract.h"
+#include "patina/math/quadrature.h"
 
 namespace patina::brdf {
 
@@ -120,6 +121,66 @@ Eigen::MatrixXd mode_at(const std::vector<BodyModes>& body, const LinearInterval
     return mode;
 }
 
+// The closed forms of one wavelength, made ready for a number of evaluations.
+std::vector<OnceScatteredLight> lights(const MuellerTable& table, int w, std::size_t evaluations) {
+    std::vector<OnceScatteredLight> result;
+    if (table.once_scattered.empty()) return result;
+    for (const OnceScattered& layer : table.once_scattered[w])
+        result.emplace_back(layer, table.specular_theta_deg, evaluations);
+    return result;
+}
+
+void add_once_scattered(const MuellerTable& table, int w, double weight, std::span<const double> mu_o,
+                        std::span<const double> mu_i, std::span<const double> phi, MuellerGrid& grid) {
+    if (weight == 0.0) return;
+    for (const OnceScatteredLight& light : lights(table, w, grid.values.size())) {
+        auto value = grid.values.begin();
+        for (const double out : mu_o)
+            for (const double in : mu_i)
+                for (const double azimuth : phi) *value++ += weight * light(out, in, azimuth);
+    }
+}
+
+// Flux of the once scattered light of the Stokes vectors (1,0,0,0) and (0,1,0,0), by quadrature of the upper
+// hemisphere.
+Eigen::RowVector2d once_scattered_albedo(const MuellerTable& table, int w, double mu_i) {
+    constexpr int zeniths = 96, azimuths = 180;
+    const math::Quadrature rule = math::gauss_legendre(zeniths, 0.0, 1.0);
+    Eigen::RowVector2d flux = Eigen::RowVector2d::Zero();
+    for (const OnceScatteredLight& light : lights(table, w, zeniths * azimuths))
+        for (int o = 0; o < zeniths; ++o)
+            for (int p = 0; p < azimuths; ++p)
+                flux += rule.weights[o] * rule.nodes[o] * (2 * pi / azimuths) *
+                        light(rule.nodes[o], mu_i, 2 * pi * (p + 0.5) / azimuths).block<1, 2>(0, 0);
+    return flux;
+}
+
+void require_once_scattered(const SourceLocation& where, const MuellerTable& table) {
+    if (table.once_scattered.empty()) return;
+    require_count(where, "once_scattered", table.once_scattered.size(), table.wavelengths_nm.size(), "wavelengths_nm");
+    for (std::size_t w = 0; w < table.once_scattered.size(); ++w)
+        for (const OnceScattered& layer : table.once_scattered[w]) {
+            if (!(layer.index_ratio > 0.0 && std::isfinite(layer.index_ratio) && layer.optical_thickness >= 0.0))
+                throw input_error(where, fmt::format("once_scattered has no sense at {} nm", table.wavelengths_nm[w]),
+                                  "an index ratio is above 0, an optical thickness not below");
+            require_count(where, "once_scattered light", layer.down.size(), table.specular_theta_deg.size(),
+                          "specular_theta_deg");
+            require_count(where, "once_scattered light", layer.up.size(), layer.down.size(), "specular_theta_deg");
+            const optics::ExpansionCoefficients& x = layer.scattering;
+            for (const auto* list : {&x.alpha1, &x.alpha2, &x.alpha3, &x.alpha4, &x.beta1, &x.beta2}) {
+                require_count(where, "once_scattered scattering", list->size(), x.alpha1.size(), "its order");
+                for (const double value : *list)
+                    require_finite(where, "once_scattered", std::isfinite(value), table.wavelengths_nm[w]);
+            }
+            if (x.order() < 2 || x.order() > 100'000)
+                throw input_error(where, fmt::format("once_scattered scattering is of order {}", x.order()),
+                                  "2 to 100000 make sense");
+            for (const auto* list : {&layer.down, &layer.up})
+                for (const Mueller& mueller : *list)
+                    require_finite(where, "once_scattered", mueller.allFinite(), table.wavelengths_nm[w]);
+        }
+}
+
 }  // namespace
 
 void MuellerTable::validate(const SourceLocation& where) const {
@@ -149,6 +210,7 @@ void MuellerTable::validate(const SourceLocation& where) const {
     require_axis(where, "specular_theta_deg", specular_theta_deg, 1, 0.0, 90.0);
     require_specular(where, "specular_surface", *this, specular_surface);
     require_specular(where, "specular_coherent", *this, specular_coherent);
+    require_once_scattered(where, *this);
     if (!error_estimate.empty()) {
         require_count(where, "error_estimate", error_estimate.size(), wavelengths_nm.size(), "wavelengths_nm");
         for (std::size_t w = 0; w < error_estimate.size(); ++w)
@@ -161,34 +223,44 @@ Mueller MuellerTable::evaluate(double wavelength_nm, double mu_o, double mu_i, d
     PATINA_EXPECT(mu_o >= 0 && mu_o <= 1 && mu_i >= 0 && mu_i <= 1 && std::isfinite(phi));
     const BarycentricInterpolation interpolation(mu);
     const Eigen::VectorXd lagrange_o = interpolation.weights(mu_o), lagrange_i = interpolation.weights(mu_i);
-    const auto at = [&](int w) { return evaluate_modes(body[w], mu, lagrange_o, lagrange_i, mu_o, mu_i, phi); };
+    const auto at = [&](int w) -> Mueller {
+        return evaluate_modes(body[w], mu, lagrange_o, lagrange_i, mu_o, mu_i, phi) +
+               evaluate_once_scattered(w, mu_o, mu_i, phi);
+    };
 
     const LinearInterval interval = linear_interval(wavelengths_nm, wavelength_nm);
     if (interval.upper_weight == 0.0) return at(interval.lower);
     return (1 - interval.upper_weight) * at(interval.lower) + interval.upper_weight * at(interval.upper);
 }
 
+int MuellerTable::orders(double wavelength_nm) const {
+    const LinearInterval interval = linear_interval(wavelengths_nm, wavelength_nm);
+    return static_cast<int>(std::max(body[interval.lower].modes.size(), body[interval.upper].modes.size()));
+}
+
+Eigen::MatrixXd MuellerTable::mode(double wavelength_nm, int m, std::span<const double> mu_o,
+                                   std::span<const double> mu_i) const {
+    const LinearInterval interval = linear_interval(wavelengths_nm, wavelength_nm);
+    const BarycentricInterpolation interpolation(mu);
+    return interpolation_matrix(interpolation, mu, mu_o, m) *
+           mode_at(body, interval, static_cast<std::size_t>(m), static_cast<Eigen::Index>(4 * mu.size())) *
+           interpolation_matrix(interpolation, mu, mu_i, m).transpose();
+}
+
 MuellerGrid MuellerTable::evaluate_grid(double wavelength_nm, std::span<const double> mu_o,
                                         std::span<const double> mu_i, std::span<const double> phi) const {
     const auto inside = [](double x) { return x >= 0 && x <= 1; };
     PATINA_EXPECT(std::ranges::all_of(mu_o, inside) && std::ranges::all_of(mu_i, inside));
-    const LinearInterval interval = linear_interval(wavelengths_nm, wavelength_nm);
-    const BarycentricInterpolation interpolation(mu);
-    const std::size_t orders = std::max(body[interval.lower].modes.size(), body[interval.upper].modes.size());
-
+    const int count = orders(wavelength_nm);
     MuellerGrid grid{static_cast<int>(mu_o.size()), static_cast<int>(mu_i.size()), static_cast<int>(phi.size()), {}};
     grid.values.assign(mu_o.size() * mu_i.size() * phi.size(), Mueller::Zero());
-    for (std::size_t m = 0; m < orders; ++m) {
-        // Carry the mode to the directions asked for.
-        const int order = static_cast<int>(m);
-        const Eigen::MatrixXd values = interpolation_matrix(interpolation, mu, mu_o, order) *
-                                       mode_at(body, interval, m, static_cast<Eigen::Index>(4 * mu.size())) *
-                                       interpolation_matrix(interpolation, mu, mu_i, order).transpose();
+    for (int m = 0; m < count; ++m) {
+        const Eigen::MatrixXd values = mode(wavelength_nm, m, mu_o, mu_i);
 
         // The azimuth dependence of the 16 elements, one matrix an azimuth.
         std::vector<Mueller> azimuth(phi.size());
         for (std::size_t p = 0; p < phi.size(); ++p) {
-            const double multiplicity = m == 0 ? 1.0 : 2.0, c = std::cos(order * phi[p]), s = std::sin(order * phi[p]);
+            const double multiplicity = m == 0 ? 1.0 : 2.0, c = std::cos(m * phi[p]), s = std::sin(m * phi[p]);
             for (int row = 0; row < 4; ++row)
                 for (int column = 0; column < 4; ++column)
                     azimuth[p](row, column) = multiplicity * azimuth_factor(row, column, c, s);
@@ -202,7 +274,16 @@ MuellerGrid MuellerTable::evaluate_grid(double wavelength_nm, std::span<const do
                 for (int p = 0; p < grid.azimuths; ++p) *value++ += azimuth[p].cwiseProduct(amplitude);
             }
     }
+    const LinearInterval interval = linear_interval(wavelengths_nm, wavelength_nm);
+    add_once_scattered(*this, interval.lower, 1 - interval.upper_weight, mu_o, mu_i, phi, grid);
+    add_once_scattered(*this, interval.upper, interval.upper_weight, mu_o, mu_i, phi, grid);
     return grid;
+}
+
+Mueller MuellerTable::evaluate_once_scattered(int w, double mu_o, double mu_i, double phi) const {
+    Mueller sum = Mueller::Zero();
+    for (const OnceScatteredLight& light : lights(*this, w, 1)) sum += light(mu_o, mu_i, phi);
+    return sum;
 }
 
 Mueller MuellerTable::specular(double wavelength_nm, double mu_i) const {
@@ -231,7 +312,7 @@ double MuellerTable::body_albedo(double wavelength_nm, double mu_i, const Stokes
             for (std::size_t i = 0; i < mu.size(); ++i)
                 flux += mu_weights[o] * mu[o] * lagrange[i] *
                         mean.block<1, 2>(4 * o, 4 * i).dot(incident.head<2>().transpose());
-        return 2 * pi * flux / incident[0];
+        return (2 * pi * flux + once_scattered_albedo(*this, w, mu_i).dot(incident.head<2>())) / incident[0];
     };
     return (1 - interval.upper_weight) * at(interval.lower) + interval.upper_weight * at(interval.upper);
 }

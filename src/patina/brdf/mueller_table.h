@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "patina/brdf/once_scattered.h"
 #include "patina/core/error.h"
 #include "patina/optics/stokes.h"
 
@@ -51,6 +52,9 @@ class MuellerTable {
     std::vector<double> specular_theta_deg;  // ascending 0 .. 90, A
     std::vector<std::vector<optics::Mueller>> specular_surface;   // [W][A] Fresnel reflection at the top
     std::vector<std::vector<optics::Mueller>> specular_coherent;  // [W][A] unscattered beam returned by a metal base
+    // [W][layers] What the modes leave out and evaluation adds: light scattered once in layers of sharp forward peaks,
+    // in closed form. Empty when the modes hold all; a wavelength's list may be empty.
+    std::vector<std::vector<OnceScattered>> once_scattered;
     std::vector<double> error_estimate;  // [W] of the body BRDF, absolute, 1/sr; empty when not estimated
     Provenance provenance;
 
@@ -70,9 +74,17 @@ class MuellerTable {
     MuellerGrid evaluate_grid(double wavelength_nm, std::span<const double> mu_o, std::span<const double> mu_i,
                               std::span<const double> phi) const;
 
+    // Order m of the body BRDF between the given cosines, (4 x mu_o.size()) x (4 x mu_i.size()); zero beyond the last.
+    Eigen::MatrixXd mode(double wavelength_nm, int m, std::span<const double> mu_o, std::span<const double> mu_i) const;
+    // How many orders the body BRDF has at a wavelength.
+    int orders(double wavelength_nm) const;
+
     // The delta part (surface + coherent) along the mirror direction; cubic in the angle of incidence, whose steep end
     // at grazing a straight line between whole degrees would miss by 1e-3.
     optics::Mueller specular(double wavelength_nm, double mu_i) const;
+
+    // The once scattered part alone, element by element of once_scattered, at a tabulated wavelength (a position).
+    optics::Mueller evaluate_once_scattered(int w, double mu_o, double mu_i, double phi) const;
 
     // Directional-hemispherical reflectance of the body for a Stokes vector incident at mu_i.
     double body_albedo(double wavelength_nm, double mu_i, const optics::Stokes& incident = {1, 0, 0, 0}) const;

@@ -1,13 +1,12 @@
 #include "patina/coating/number_csv.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "patina/core/files.h"
+#include "patina/spectral/text_table.h"
 
 namespace patina::coating {
 
@@ -15,53 +14,37 @@ namespace {
 
 constexpr std::uint64_t largest_file = std::uint64_t{64} << 20;
 
-std::string without_blanks(std::string_view line) {
-    std::string text;
-    for (const char c : line)
-        if (c != ' ' && c != '\t' && c != '\r') text += c;
-    return text;
-}
-
-NumberRow parse_row(const std::string& line, const SourceLocation& where, std::string_view header) {
-    const auto columns = static_cast<std::size_t>(std::count(header.begin(), header.end(), ',')) + 1;
-    NumberRow row{where, std::vector<double>(columns)};
-    const char* at = line.data();
-    const char* const end = line.data() + line.size();
-    for (std::size_t column = 0; column < columns; ++column) {
-        const SourceLocation here{where.file, where.line, static_cast<int>(at - line.data()) + 1};
-        const auto [stop, status] = std::from_chars(at, end, row.values[column]);
-        if (status != std::errc{} || !std::isfinite(row.values[column]))
-            throw input_error(here, "a finite number is expected", fmt::format("the columns are {}", header));
-        const bool last = column + 1 == columns;
-        if (last ? stop != end : (stop == end || *stop != ','))
-            throw input_error(here, fmt::format("a row has {} numbers separated by commas", columns),
-                              fmt::format("the columns are {}", header));
-        at = stop + 1;
-    }
-    return row;
+// The header a row of words is, as one of `headers`.
+std::string_view header_of(const spectral::TextRow& row, std::span<const std::string_view> headers,
+                           const SourceLocation& where) {
+    std::string found;
+    for (const spectral::TextCell& cell : row.cells) found += (found.empty() ? "" : ",") + cell.text;
+    const auto header = std::find(headers.begin(), headers.end(), found);
+    if (header == headers.end())
+        throw input_error(where, "the header line is missing", fmt::format("it reads {}", fmt::join(headers, " or ")));
+    return *header;
 }
 
 }  // namespace
 
 NumberTable read_number_csv(const std::filesystem::path& path, std::span<const std::string_view> headers) {
-    const std::string text = read_text_file(path, largest_file);
+    const spectral::TextTable text = spectral::split_text_table(read_text_file(path, largest_file));
+    const std::string file = path.string();
     NumberTable table;
-    int number = 0;
-    for (std::size_t begin = 0; begin < text.size();) {
-        const std::size_t end = std::min(text.find('\n', begin), text.size());
-        const std::string line = without_blanks(std::string_view(text).substr(begin, end - begin));
-        begin = end + 1;
-        const SourceLocation where{path.string(), ++number, 1};
-        if (line.empty() || line.front() == '#') continue;
-        if (!table.header.empty()) {
-            table.rows.push_back(parse_row(line, where, table.header));
+    std::size_t columns = 0;
+    for (const spectral::TextRow& row : text.rows) {
+        const SourceLocation where{file, row.line, 1};
+        if (table.header.empty()) {
+            table.header = header_of(row, headers, where);
+            columns = row.cells.size();
             continue;
         }
-        const auto found = std::find(headers.begin(), headers.end(), line);
-        if (found == headers.end())
-            throw input_error(where, "the header line is missing",
-                              fmt::format("it reads {}", fmt::join(headers, " or ")));
-        table.header = *found;
+        if (row.cells.size() != columns)
+            throw input_error(where, fmt::format("{} cells in a row", row.cells.size()),
+                              fmt::format("the columns are {}", table.header));
+        NumberRow& numbers = table.rows.emplace_back(NumberRow{where, {}});
+        for (const spectral::TextCell& cell : row.cells)
+            numbers.values.push_back(spectral::number_in(cell, file, row.line));
     }
     return table;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// CSV files of a fixed header and rows of finite numbers.
+// Tables of a fixed header and rows of finite numbers, CSV or separated by white space.
 
 #include <filesystem>
 #include <span>
@@ -21,8 +21,8 @@ struct NumberTable {
     std::vector<NumberRow> rows;
 };
 
-// The header is one of `headers` (blanks do not matter), lines that start with '#' and empty ones are left out. Throws
-// Error(input) with line and column for another header, a cell that is not a finite number, a row of another length.
+// The header is one of `headers`, written with commas there; '#' starts a comment. Throws Error(input) with line and
+// column for another header, a cell that is not a finite number, a row of another length.
 NumberTable read_number_csv(const std::filesystem::path& path, std::span<const std::string_view> headers);
 
 }  // namespace patina::coating

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "patina/core/constants.h"
+#include "patina/core/contract.h"
 #include "patina/optics/scattering/mixture.h"
 #include "patina/optics/scattering/structure_factor.h"
 
@@ -21,6 +22,8 @@ constexpr double strongest_binder_absorption = 0.05;
 constexpr double neglected_reflectance = 5e-4;
 // From this k on that is reported.
 constexpr double reported_binder_absorption = 1e-3;
+// Indices this near to each other reflect less than 1e-7 at all but grazing angles.
+constexpr double same_index = 1e-3;
 
 // Turns the recipe into numbers at one wavelength and remembers what had to be assumed.
 class ProblemBuilder {
@@ -34,6 +37,7 @@ class ProblemBuilder {
                 std::visit([&](const auto& content) { return layer_of(content); }, layer.content));
         result_.problem.refractive_index_above =
             recipe_.has_interface ? 1.0 : result_.problem.layers.front().refractive_index;
+        result_.problem.top_roughness = recipe_.has_interface ? recipe_.interface_roughness : std::nullopt;
         result_.problem.base = std::visit([&](const auto& base) { return base_of(base); }, recipe_.base);
         return std::move(result_);
     }
@@ -138,6 +142,32 @@ class ProblemBuilder {
     rt::Base base_of(const NoBase&) { return rt::BlackBase{}; }
     rt::Base base_of(const LambertianBase& base) { return rt::LambertianBase{base.reflectance(wavelength_nm_)}; }
     rt::Base base_of(const MetalBase& base) { return rt::MetalBase{index_of(base.material), base.roughness}; }
+
+    rt::Base base_of(const TableBase& base) {
+        // The wavelengths of the table.
+        const std::vector<double>& known = base.table->wavelengths_nm;
+        if (known.size() > 1 && !(wavelength_nm_ >= known.front() && wavelength_nm_ <= known.back())) {
+            if (recipe_.extrapolation != optics::Extrapolation::hold)
+                throw Error(ErrorKind::input,
+                            fmt::format("{}: known from {:g} to {:g} nm, not at {:g} nm "
+                                        "(extrapolation = \"hold\" holds its ends)",
+                                        base.file.string(), known.front(), known.back(), wavelength_nm_));
+            result_.notes.push_back(fmt::format("base {}: known from {:g} to {:g} nm; its ends are held outside",
+                                                base.file.filename().string(), known.front(), known.back()));
+        }
+
+        // A medium of another index between the layers and the surface.
+        const double lowest = result_.problem.layers.back().refractive_index;
+        const std::optional<double> medium = base.medium_index(wavelength_nm_);
+        PATINA_EXPECT(medium.has_value());
+        if (std::abs(*medium - lowest) > same_index) {
+            result_.problem.layers.push_back({0.0, 0.0, {{1.0}, {0.0}, {0.0}, {0.0}, {0.0}, {0.0}}, *medium});
+            result_.notes.push_back(
+                fmt::format("base {}: seen through a smooth interface to the medium of index {:g} its table is for{}",
+                            base.file.filename().string(), *medium, *medium == 1.0 ? ", a thin gap of air" : ""));
+        }
+        return rt::SurfaceBase{surface_of(base, wavelength_nm_)};
+    }
 
     std::complex<double> index_of(const OpticalConstants& material) {
         if (!material.covers(wavelength_nm_) && recipe_.extrapolation == optics::Extrapolation::hold)

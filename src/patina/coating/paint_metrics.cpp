@@ -1,5 +1,7 @@
 #include "patina/coating/paint_metrics.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -51,8 +53,15 @@ std::string why_it_never_hides(const VariableStack& stack, const PaintOptions& o
     return fmt::format("not even a layer of {:g} hides", thickest);
 }
 
+// Where to look first: five times the film whose reflectance is three quarters of the opaque one's. It does not depend
+// on the recipe's thickness, so that neither does the answer.
+double first_guess(const std::vector<FilmCoefficients>& film) {
+    const double telling = film[film.size() / 2].kubelka_munk_thickness;
+    return telling > 0.0 && std::isfinite(telling) ? std::clamp(5.0 * telling, thinnest, thickest) : 10.0;
+}
+
 HidingPower hiding_power(const Recipe& recipe, const VariableStack& stack, const PaintOptions& options, double contrast,
-                         const JobControl& control) {
+                         const std::vector<FilmCoefficients>& film, const JobControl& control) {
     HidingPower result;
     if (const auto* composition = std::get_if<Composition>(&recipe.layers[stack.layer().index].content)) {
         result.volume_solids_given = composition->volume_solids.has_value();
@@ -64,9 +73,9 @@ HidingPower hiding_power(const Recipe& recipe, const VariableStack& stack, const
         return contrast_ratio(stack.wavelengths_nm(), over_cards(stack, thickness, options.white_reflectance, control))
             .r45_0;
     };
-    const double start = std::isfinite(stack.thickness()) && stack.thickness() > 0.0 ? stack.thickness() : 10.0;
     if (stack.layer().scatters)
-        result.thickness = hiding_thickness(contrast_at, options.wanted_contrast_ratio, start, thinnest, thickest);
+        result.thickness =
+            hiding_thickness(contrast_at, options.wanted_contrast_ratio, first_guess(film), thinnest, thickest);
     if (!result.thickness)
         result.why_not = why_it_never_hides(stack, options, contrast);
     else if (!stack.layer().is_optical)
@@ -175,7 +184,7 @@ PaintMetrics paint_metrics(const Recipe& recipe, const PaintOptions& options, co
     result.over_white = std::move(cards.white);
     result.infinite = stack.solve({{infinite_thickness}, 0.0}, control);
     result.film = film_coefficients(stack, control);
-    result.hiding = hiding_power(recipe, stack, options, result.contrast.r45_0, control);
+    result.hiding = hiding_power(recipe, stack, options, result.contrast.r45_0, result.film, control);
     result.converged = stack.converged();
     return result;
 }

@@ -10,6 +10,7 @@
 #include "patina/core/constants.h"
 #include "patina/core/contract.h"
 #include "patina/core/parallel.h"
+#include "patina/rt/problem_fingerprint.h"
 
 namespace patina::coating {
 
@@ -77,37 +78,69 @@ VariableLayer variable_layer(const Recipe& recipe) {
             std::holds_alternative<OpticalLayer>(layer.content)};
 }
 
+const ReflectanceSpectra* StackMemory::answer(std::uint64_t question) const {
+    const auto found = answers_.find(question);
+    if (found == answers_.end()) return nullptr;
+    ++found_;
+    return &found->second;
+}
+
+void StackMemory::keep(std::uint64_t question, const ReflectanceSpectra& answer) {
+    constexpr std::size_t most_answers = 100'000;  // of a kilobyte or two
+    if (answers_.size() >= most_answers) answers_.clear();
+    answers_[question] = answer;
+}
+
+const StackMemory::SetUp* StackMemory::set_up(const std::string& composition) const {
+    return !composition.empty() && set_up_.composition == composition ? &set_up_ : nullptr;
+}
+
 VariableStack::VariableStack(const Recipe& recipe, const StackOptions& options, const JobControl& control)
     : recipe_(recipe), options_(options), solver_(rt::solver_named(options.solver)) {
     PATINA_EXPECT(!options.wavelengths_nm.empty());
+    if (!options_.memory) options_.memory = std::make_shared<StackMemory>();
     layer_ = variable_layer(recipe);
     thickness_ = thickness_of(recipe.layers[layer_.index]);
-    Recipe unit = recipe;
-    unit.layers[layer_.index] = with_unit_thickness(recipe.layers[layer_.index]);
 
-    // Set up every wavelength.
-    const std::ptrdiff_t count = std::ssize(options.wavelengths_nm);
-    const double scattering_tolerance = std::clamp(0.1 * options.tolerance, 1e-7, 1e-3);
-    std::vector<OpticalProblem> set_up(count);
+    const StackMemory::SetUp* known = options_.memory->set_up(options_.composition);
+    if (!known) known = &options_.memory->keep(set_up(control));
+    problems_ = known->problems;
+    notes_ = known->notes;
+    for (const rt::Problem& problem : problems_) {
+        if (const std::string reason = solver_.unsupported(problem); !reason.empty())
+            throw Error(ErrorKind::input,
+                        fmt::format("solver \"{}\" cannot do this recipe ({})", solver_.name(), reason));
+        optical_per_length_.push_back(problem.layers[layer_.index].optical_thickness);
+    }
+    streams_ = chosen_streams(problems_, options);
+}
+
+// Every wavelength, with unit thickness of the variable layer.
+StackMemory::SetUp VariableStack::set_up(const JobControl& control) const {
+    Recipe unit = recipe_;
+    unit.layers[layer_.index] = with_unit_thickness(recipe_.layers[layer_.index]);
+    const std::vector<double>& wavelengths_nm = options_.wavelengths_nm;
+    const std::ptrdiff_t count = std::ssize(wavelengths_nm);
+    const double scattering_tolerance = std::clamp(0.1 * options_.tolerance, 1e-7, 1e-3);
+    std::vector<OpticalProblem> optical(count);
     std::atomic<int> done = 0;
     parallel_for(0, count, [&](std::ptrdiff_t w) {
         if (control.stop_requested()) return;
-        set_up[w] = optical_problem(unit, options.wavelengths_nm[w], scattering_tolerance);
-        control.report({"scattering", ++done, count, fmt::format("{:g} nm", options.wavelengths_nm[w])});
+        optical[w] = optical_problem(unit, wavelengths_nm[w], scattering_tolerance);
+        control.report({"scattering", ++done, count, fmt::format("{:g} nm", wavelengths_nm[w])});
     });
     if (control.stop_requested()) throw Error(ErrorKind::interrupted, "stopped before anything was solved");
 
+    StackMemory::SetUp result{options_.composition, {}, {}};
     std::set<std::string> notes;
-    for (OpticalProblem& optical : set_up) {
-        if (const std::string reason = solver_.unsupported(optical.problem); !reason.empty())
-            throw Error(ErrorKind::input,
-                        fmt::format("solver \"{}\" cannot do this recipe ({})", solver_.name(), reason));
-        notes.insert(optical.notes.begin(), optical.notes.end());
-        optical_per_length_.push_back(optical.problem.layers[layer_.index].optical_thickness);
-        problems_.push_back(std::move(optical.problem));
+    for (OpticalProblem& at_w : optical) {
+        notes.insert(at_w.notes.begin(), at_w.notes.end());
+        result.problems.push_back(std::move(at_w.problem));
     }
-    notes_.assign(notes.begin(), notes.end());
-    streams_ = chosen_streams(problems_, options);
+    if (result.problems.front().has_rough_top())
+        notes.insert("rough top: d:8 excluded is without the reflection of a smooth surface; 45:0 has a part of it");
+    result.notes.assign(notes.begin(), notes.end());
+    return result;
 }
 
 double VariableStack::transport_scattering(int w) const {
@@ -128,7 +161,15 @@ rt::Problem VariableStack::problem(int w, const Question& question) const {
     if (question.lambertian_base) result.base = rt::LambertianBase{*question.lambertian_base};
     if (question.lambertian_base == 0.0) result.base = rt::BlackBase{};
 
-    if (question.below == Below::nothing || std::isinf(layer.optical_thickness)) result.layers.resize(layer_.index + 1);
+    // What follows the recipe's layers is the medium of a table that is its base.
+    if (std::isinf(layer.optical_thickness)) {
+        result.layers.resize(layer_.index + 1);
+    } else {
+        if (question.lambertian_base) result.layers.resize(recipe_.layers.size());
+        if (question.below == Below::nothing)
+            result.layers.erase(result.layers.begin() + layer_.index + 1,
+                                result.layers.begin() + recipe_.layers.size());
+    }
     if (question.above == Above::nothing) {
         result.layers.erase(result.layers.begin(), result.layers.begin() + layer_.index);
         if (!recipe_.has_interface) result.refractive_index_above = result.layers.front().refractive_index;
@@ -137,8 +178,24 @@ rt::Problem VariableStack::problem(int w, const Question& question) const {
 }
 
 ReflectanceSpectra VariableStack::solve(const Question& question, const JobControl& control) const {
-    const std::ptrdiff_t count = std::ssize(problems_);
+    const int count = static_cast<int>(problems_.size());
     PATINA_EXPECT(question.thickness.size() == 1 || std::ssize(question.thickness) == count);
+    std::vector<rt::Problem> problems;
+    Fingerprint fingerprint;
+    fingerprint.add(solver_.name());
+    fingerprint.add(static_cast<double>(streams_));
+    for (int w = 0; w < count; ++w) {
+        problems.push_back(problem(w, question));
+        rt::add_to(fingerprint, problems.back());
+    }
+    if (const ReflectanceSpectra* known = options_.memory->answer(fingerprint.value())) return *known;
+    const ReflectanceSpectra result = solve(problems, control);
+    if (converged_) options_.memory->keep(fingerprint.value(), result);
+    return result;
+}
+
+ReflectanceSpectra VariableStack::solve(const std::vector<rt::Problem>& problems, const JobControl& control) const {
+    const std::ptrdiff_t count = std::ssize(problems);
     rt::SolveOptions options;
     options.streams = streams_;
     options.most_fourier_orders = 1;
@@ -148,14 +205,17 @@ ReflectanceSpectra VariableStack::solve(const Question& question, const JobContr
     const double mu_8 = std::cos(radians(8.0));
     parallel_for(0, count, [&](std::ptrdiff_t w) {
         if (control.stop_requested()) return;
-        const rt::Problem at_w = problem(static_cast<int>(w), question);
-        const rt::Reflection reflection = solver_.reflection(at_w, options);
+        const rt::Reflection reflection = solver_.reflection(problems[w], options);
         if (!reflection.diagnostics.converged) converged_ = false;
         const Geometry geometry = measure(reflection);
         result.r45_0[w] = geometry.r45_0;
-        result.d8_excluded[w] = geometry.d8;
-        result.d8_included[w] =
-            geometry.d8 + rt::specular_surface(at_w, mu_8)(0, 0) + rt::specular_coherent(at_w, mu_8)(0, 0);
+        // A rough surface scatters its reflection: what it sends in all directions is taken for that of a smooth one.
+        rt::Problem smooth = problems[w];
+        smooth.top_roughness.reset();
+        const double scattered = problems[w].has_rough_top() ? rt::specular_surface(smooth, mu_8)(0, 0) : 0.0;
+        result.d8_excluded[w] = geometry.d8 - scattered;
+        result.d8_included[w] = geometry.d8 + rt::specular_surface(problems[w], mu_8)(0, 0) +
+                                rt::specular_coherent(problems[w], mu_8)(0, 0);
         result.bihemispherical[w] = geometry.bihemispherical;
     });
     if (control.stop_requested()) throw Error(ErrorKind::interrupted, "stopped");

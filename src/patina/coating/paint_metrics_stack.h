@@ -2,6 +2,9 @@
 // A recipe at a list of wavelengths, set up once, with one layer of variable thickness over any base.
 
 #include <atomic>
+#include <cstdint>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,11 +24,39 @@ struct ReflectanceSpectra {
     std::vector<double> bihemispherical;  // d:d, diffuse in, all out; specular reflection left out
 };
 
+// What stacks of one series have been asked already: a sweep over thickness asks again for the infinite layer, for the
+// film that hides and for the film's coefficients, one over the base for all but the own base. Answers are found by
+// everything they depend on, so that they are the very bits a stack without memory gives.
+class StackMemory {
+  public:
+    struct SetUp {
+        std::string composition;  // see StackOptions
+        std::vector<rt::Problem> problems;
+        std::vector<std::string> notes;
+    };
+
+    const ReflectanceSpectra* answer(std::uint64_t question) const;
+    void keep(std::uint64_t question, const ReflectanceSpectra& answer);
+    // Of the last composition.
+    const SetUp* set_up(const std::string& composition) const;
+    const SetUp& keep(SetUp set_up) { return set_up_ = std::move(set_up); }
+
+    std::size_t answers_found() const { return found_; }
+
+  private:
+    std::map<std::uint64_t, ReflectanceSpectra> answers_;
+    SetUp set_up_;
+    mutable std::size_t found_ = 0;
+};
+
 struct StackOptions {
     std::vector<double> wavelengths_nm;  // ascending, at least one
     double tolerance = 1e-3;             // relative, of reflectances
     int streams = 0;                     // 0 = from the tolerance
     std::string solver = "doubling";
+    std::shared_ptr<StackMemory> memory;  // shared by the stacks of a series, one at a time; may be null
+    // Recipes of the same name differ in the thickness of the variable layer alone; empty: not known.
+    std::string composition;
 };
 
 // The layer whose thickness varies: the topmost that scatters, else the topmost.
@@ -78,7 +109,9 @@ class VariableStack {
     bool converged() const { return converged_; }
 
   private:
+    StackMemory::SetUp set_up(const JobControl& control) const;
     rt::Problem problem(int w, const Question& question) const;
+    ReflectanceSpectra solve(const std::vector<rt::Problem>& problems, const JobControl& control) const;
 
     const Recipe& recipe_;
     StackOptions options_;

@@ -92,7 +92,29 @@ TEST(PaintMetrics, TheHidingFilmHasTheWantedContrast) {
     EXPECT_NEAR(hiding.contrast.r45_0, 0.98, 1e-5);  // thickness to 1e-4, left of the contrast 0.02
     EXPECT_NEAR(*m.hiding.spreading_rate_m2_per_l, 1000.0 / *m.hiding.thickness, 1e-12);
     // It is a property of the paint, not of the coat the recipe happens to have.
-    EXPECT_NEAR(*metrics_of({"layers.0.thickness_um=300"}).hiding.thickness / *m.hiding.thickness, 1.0, 2e-4);
+    EXPECT_EQ(*metrics_of({"layers.0.thickness_um=300"}).hiding.thickness, *m.hiding.thickness);
+}
+
+// A coat of another thickness or over another base asks some of the same questions; remembered answers have the bits of
+// computed ones.
+TEST(PaintMetrics, RememberedAnswersHaveTheSameBits) {
+    PaintOptions series = at_550();
+    series.stack.memory = std::make_shared<StackMemory>();
+    series.stack.composition = "the paint";
+    for (const char* thickness : {"10", "3"}) {
+        const std::vector<std::string> settings{std::string("layers.0.thickness_um=") + thickness};
+        const Recipe recipe = parse_recipe(paint_text, "paint.toml", ".", settings);
+        const PaintMetrics remembered = paint_metrics(recipe, series, {}), alone = metrics_of(settings);
+        EXPECT_EQ(remembered.own.r45_0, alone.own.r45_0);
+        EXPECT_EQ(remembered.over_white.d8_included, alone.over_white.d8_included);
+        EXPECT_EQ(remembered.infinite.bihemispherical, alone.infinite.bihemispherical);
+        EXPECT_EQ(*remembered.hiding.thickness, *alone.hiding.thickness);
+        EXPECT_EQ(remembered.film[0].kubelka_munk->s, alone.film[0].kubelka_munk->s);
+        EXPECT_EQ(remembered.contrast.d8_included, alone.contrast.d8_included);
+    }
+    // The second coat asked anew only for what depends on its thickness: over its base, which is as black as the black
+    // card, and over white. The whole search for the hiding film was known.
+    EXPECT_GE(series.stack.memory->answers_found(), 10u);
 }
 
 TEST(PaintMetrics, MorePigmentHidesMoreAndVolumeSolidsScale) {

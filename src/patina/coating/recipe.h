@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "patina/coating/table_base.h"
 #include "patina/core/error.h"
 #include "patina/optics/refractive_index.h"
 #include "patina/optics/scattering/expansion_coefficients.h"
@@ -68,9 +69,10 @@ struct MetalBase {
 struct Recipe {
     std::string title;
     optics::Extrapolation extrapolation = optics::Extrapolation::refuse;
-    bool has_interface = false;       // a Fresnel interface to air on top; else the top is index matched
+    bool has_interface = false;  // a Fresnel interface to air on top; else the top is index matched
+    std::optional<rt::RoughSurface> interface_roughness;  // of that interface; smooth without
     std::vector<RecipeLayer> layers;  // top to bottom, at least one; those of a base recipe are the last
-    std::variant<NoBase, LambertianBase, MetalBase> base;
+    std::variant<NoBase, LambertianBase, MetalBase, TableBase> base;
     std::string text;  // as read, after --set, for provenance
     std::string path;
 

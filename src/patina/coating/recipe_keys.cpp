@@ -22,7 +22,10 @@ constexpr std::array top_keys{
 };
 
 constexpr std::array interface_keys{
-    KeyInfo{"type", text, "", "smooth", "\"smooth\": a Fresnel interface between air and the first layer"},
+    KeyInfo{"type", text, "", "smooth",
+            "\"smooth\" | \"rough\": a Fresnel interface between air and the first layer, plane or of facets"},
+    KeyInfo{"alpha", number, "1", "", "rough: width of the slopes of the facets", 0.04, 1.0},
+    KeyInfo{"distribution", text, "", "ggx", "rough: \"ggx\" | \"beckmann\": of the facets' slopes"},
 };
 
 constexpr std::array layer_keys{
@@ -104,7 +107,7 @@ constexpr std::array size_keys{
 };
 
 constexpr std::array base_keys{
-    KeyInfo{"type", text, "", "none", "\"none\" | \"lambertian\" | \"metal\" | \"recipe\""},
+    KeyInfo{"type", text, "", "none", "\"none\" | \"lambertian\" | \"metal\" | \"recipe\" | \"table\""},
     KeyInfo{"reflectance", number, "1", "", "lambertian: 0 to 1, or a spectrum file (.spd, .csv)", 0.0, 1.0},
     KeyInfo{"material", text, "", "", "metal: a built-in material, an n,k file, or { n = 1.0, k = 6.6 }"},
     KeyInfo{"alpha", number, "1", "", "metal: width of the slopes of a rough surface's facets; omit for a mirror", 0.04,
@@ -112,6 +115,10 @@ constexpr std::array base_keys{
     KeyInfo{"distribution", text, "", "ggx", "metal with alpha: \"ggx\" | \"beckmann\": of the facets' slopes"},
     KeyInfo{"recipe", text, "", "",
             "recipe: file of another coating, whose layers and base lie below this one's layers"},
+    KeyInfo{"file", text, "", "", "table: a computed (.h5) or measured (.pbsdf) Mueller BRDF"},
+    KeyInfo{"refractive_index", number, "1", "",
+            "table: of the medium that its directions are in; omit for what the file records (1: a surface in air)",
+            1.0, 10.0},
 };
 
 constexpr std::array tables{

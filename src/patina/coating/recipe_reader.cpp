@@ -117,13 +117,30 @@ void append_recipe(const TableReader& reader, const Context& context, Recipe& re
     for (std::string line; std::getline(lines, line);) recipe.text += "# " + line + "\n";
 }
 
+TableBase read_table_base(const TableReader& reader, const Context& context, const Recipe& recipe) {
+    const fs::path file = context.folder / reader.text("file");
+    if (!fs::exists(file)) throw input_error(reader.where("file"), fmt::format("{}: file not found", file.string()));
+    if (const auto* optical = std::get_if<OpticalLayer>(&recipe.layers.back().content);
+        optical && std::isinf(optical->optical_thickness))
+        throw input_error(reader.where("file"), "an infinite layer hides what lies below it", "", "leave the base out");
+    TableBase base{file, read_base_table(file), reader.optional_number("refractive_index")};
+    if (!base.medium_index(base.table->wavelengths_nm.front()))
+        throw input_error(reader.where("file"),
+                          fmt::format("{} does not record the refractive index its directions are in", file.string()),
+                          "a surface in air and one below a clear coat reflect differently",
+                          "refractive_index = 1 for one measured in air");
+    return base;
+}
+
 void read_base(const toml::table* table, const Context& context, Recipe& recipe) {
     if (!table) return;
     const TableReader reader(*table, recipe_keys("[base]"), "base", context.file);
     static constexpr std::string_view metal_keys[] = {"material", "alpha", "distribution"},
-                                      reflectance_key[] = {"reflectance"}, recipe_key[] = {"recipe"};
+                                      reflectance_key[] = {"reflectance"}, recipe_key[] = {"recipe"},
+                                      table_keys[] = {"file", "refractive_index"};
     static constexpr std::string_view distribution_key[] = {"distribution"};
-    const std::string type = reader.choice("type", {"none", "lambertian", "metal", "recipe"});
+    const std::string type = reader.choice("type", {"none", "lambertian", "metal", "recipe", "table"});
+    if (type != "table") reader.forbid(table_keys, "only a base of type \"table\" has one");
     if (type != "metal") reader.forbid(metal_keys, "only a metal base has a material and facets");
     if (type != "lambertian") reader.forbid(reflectance_key, "only a lambertian base has a reflectance");
     if (type != "recipe") reader.forbid(recipe_key, "only a base of type \"recipe\" has one");
@@ -134,13 +151,19 @@ void read_base(const toml::table* table, const Context& context, Recipe& recipe)
         recipe.base = std::move(metal);
     }
     if (type == "lambertian") recipe.base = LambertianBase{read_reflectance(reader, context)};
+    if (type == "table") recipe.base = read_table_base(reader, context, recipe);
     if (type == "recipe") append_recipe(reader, context, recipe);
 }
 
 void read_interface(const toml::table* table, const Context& context, Recipe& recipe) {
     if (!table) return;
     const TableReader reader(*table, recipe_keys("[interface]"), "interface", context.file);
-    recipe.has_interface = reader.choice("type", {"smooth"}) == "smooth";
+    recipe.has_interface = true;
+    static constexpr std::string_view rough_keys[] = {"alpha", "distribution"};
+    if (reader.choice("type", {"smooth", "rough"}) == "rough")
+        recipe.interface_roughness = read_roughness(reader);
+    else
+        reader.forbid(rough_keys, "only an interface of type \"rough\" has facets");
 }
 
 toml::table parse_toml(const std::string& text, const std::string& name) {
@@ -257,6 +280,7 @@ bool Recipe::is_wavelength_independent() const {
         return std::holds_alternative<OpticalLayer>(layer.content);
     });
     if (!optical || std::holds_alternative<MetalBase>(base)) return false;
+    if (const auto* known = std::get_if<TableBase>(&base)) return known->table->wavelengths_nm.size() == 1;
     const LambertianBase* lambertian = std::get_if<LambertianBase>(&base);
     return !lambertian || lambertian->reflectance.is_uniform();
 }

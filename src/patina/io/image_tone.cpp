@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include <Eigen/Dense>
 
@@ -32,29 +31,17 @@ Eigen::Vector3d mean_color(const StokesImage& image) {
     return sum;
 }
 
-// XYZ, Y = 1, of the lamps' light; of a uniform spectrum when the picture does not tell or they are no white.
-Eigen::Vector3d white_of_scene(const StokesImage& image) {
-    constexpr double farthest = 0.12;  // candles are 0.11 away, the primaries of a screen 0.13 to 0.31
-    const Eigen::Vector3d equal = Eigen::Vector3d::Ones();
-    const auto note = image.metadata.find("white_xyz");
-    Eigen::Vector3d xyz;
-    if (note == image.metadata.end() ||
-        std::sscanf(note->second.c_str(), "%lf %lf %lf", &xyz[0], &xyz[1], &xyz[2]) != 3 || !xyz.allFinite() ||
-        !(xyz.minCoeff() > 0))
-        return equal;
-    // CIE 1976 u'v'.
-    const auto uv = [](const Eigen::Vector3d& c) {
-        const double sum = c[0] + 15 * c[1] + 3 * c[2];
-        return Eigen::Vector2d(4 * c[0] / sum, 9 * c[1] / sum);
-    };
-    return (uv(xyz) - uv(equal)).norm() < farthest ? Eigen::Vector3d(xyz / xyz[1]) : equal;
+WhiteBalance balance_of_the_light(const StokesImage& image) {
+    const auto white = image.metadata.find("white");
+    const bool uniform = white == image.metadata.end() ? image.bin_count() > 0 : white->second == "E";
+    return uniform ? WhiteBalance::equal_energy : WhiteBalance::none;
 }
 
 // Linear sRGB to linear sRGB.
 Eigen::Matrix3d balance_matrix(const StokesImage& image, WhiteBalance balance) {
+    if (balance == WhiteBalance::automatic) balance = balance_of_the_light(image);
     if (balance == WhiteBalance::none) return Eigen::Matrix3d::Identity();
     Eigen::Vector3d white = Eigen::Vector3d::Ones();  // XYZ of a uniform spectrum
-    if (balance == WhiteBalance::scene) white = white_of_scene(image);
     if (balance == WhiteBalance::grey_world) {
         const Eigen::Vector3d mean = spectral::linear_srgb_to_xyz(mean_color(image));
         if (!(mean.minCoeff() > 0)) return Eigen::Matrix3d::Identity();

@@ -1,10 +1,7 @@
 #pragma once
 // From scene-linear colour to what a screen shows.
 //
-// 1. White balance: a von Kries adaptation (Bradford) that makes the chosen white neutral. By default that of the
-//    scene's lamps together, which the renderer leaves in the metadata "white_xyz"; lamps so coloured that an eye would
-//    not take them for white (further than 0.12 from equal energy in u'v'), and pictures that do not tell, are balanced
-//    to equal energy.
+// 1. White balance: a von Kries adaptation (Bradford) that makes the chosen white neutral.
 // 2. Exposure: a factor 2^ev, after the automatic one that brings the 98th percentile of the luminance to 0.8.
 // 3. Tone curve on the luminance: the identity up to 0.6, above it 1 - 0.4 exp(-(Y - 0.6)/0.4), which goes on with the
 //    same slope and reaches white at infinity, so that shadows and midtones are untouched and highlights roll off.
@@ -16,7 +13,8 @@
 namespace patina::io {
 
 enum class WhiteBalance {
-    scene,         // the light of the scene is neutral
+    automatic,     // as the scene was lit (metadata "white"): none for D65, equal_energy for E; without the metadata
+                   // equal_energy for pictures with bins, none for others
     none,          // as the file has it: a uniform spectrum is (1.205, 0.948, 0.909)
     equal_energy,  // a uniform spectrum is neutral
     grey_world     // the mean of the picture is neutral
@@ -25,7 +23,7 @@ enum class WhiteBalance {
 struct ToneOptions {
     double exposure_ev = 0.0;
     bool automatic_exposure = true;
-    WhiteBalance white_balance = WhiteBalance::scene;
+    WhiteBalance white_balance = WhiteBalance::automatic;
     bool tone_curve = true;  // else what is above 1 is clipped by the writer
 };
 

@@ -45,6 +45,9 @@ constexpr Convention conventions[] = {
     {"convention_interpolation",
      "Lagrange polynomials on mu for body[m], after division of odd m by sqrt((1 - mu_out^2)(1 - mu_in^2)); linear in "
      "wavelength, clamped at the ends"},
+    {"convention_once_scattered",
+     "where there is a group once_scattered, the body BRDF is that of the modes plus its closed form "
+     "(docs/formats/mueller_table_hdf5.md)"},
     {"convention_specular",
      "radiance out along the mirror direction = specular radiance in, same Stokes frames; total = specular_surface + "
      "specular_coherent"},
@@ -131,6 +134,46 @@ void write_values(hdf5::Writer& file, const MuellerTable& table, std::size_t ord
     file.attribute("error_estimate", "long_name", "estimated largest absolute error of the body BRDF");
 }
 
+constexpr std::vector<double> optics::ExpansionCoefficients::*coefficient_lists[] = {
+    &optics::ExpansionCoefficients::alpha1, &optics::ExpansionCoefficients::alpha2,
+    &optics::ExpansionCoefficients::alpha3, &optics::ExpansionCoefficients::alpha4,
+    &optics::ExpansionCoefficients::beta1,  &optics::ExpansionCoefficients::beta2};
+
+// Once scattered light, in arrays as large as the wavelength of most layers and orders needs; layers that only fill up
+// have no scattering coefficients but zeros.
+void write_once_scattered(hdf5::Writer& file, const MuellerTable& table) {
+    std::size_t layers = 0, orders = 3;
+    for (const auto& at_w : table.once_scattered) {
+        layers = std::max(layers, at_w.size());
+        for (const brdf::OnceScattered& layer : at_w) orders = std::max(orders, layer.scattering.alpha1.size());
+    }
+    if (layers == 0) return;
+    const std::size_t w_count = table.wavelengths_nm.size(), angles = table.specular_theta_deg.size();
+    std::vector<double> index(w_count * layers, 1.0), thickness(w_count * layers, 0.0),
+        scattering(w_count * layers * 6 * orders, 0.0), down(w_count * layers * angles * 16, 0.0), up = down;
+    for (std::size_t w = 0; w < w_count; ++w)
+        for (std::size_t k = 0; k < table.once_scattered[w].size(); ++k) {
+            const brdf::OnceScattered& layer = table.once_scattered[w][k];
+            const std::size_t at = w * layers + k;
+            index[at] = layer.index_ratio;
+            thickness[at] = layer.optical_thickness;
+            for (std::size_t list = 0; list < 6; ++list)
+                std::ranges::copy(layer.scattering.*coefficient_lists[list],
+                                  scattering.begin() + static_cast<std::ptrdiff_t>((at * 6 + list) * orders));
+            for (std::size_t a = 0; a < angles; ++a) {
+                RowMajorMueller::Map(down.data() + 16 * (at * angles + a)) = layer.down[a];
+                RowMajorMueller::Map(up.data() + 16 * (at * angles + a)) = layer.up[a];
+            }
+        }
+    file.group("/once_scattered");
+    file.dataset("/once_scattered/index_ratio", {w_count, layers}, index);
+    file.dataset("/once_scattered/optical_thickness", {w_count, layers}, thickness);
+    file.dataset("/once_scattered/scattering", {w_count, layers, 6, orders}, scattering);
+    const hdf5::DatasetOptions storage{false, {1, layers, angles, 4, 4}, 1};
+    file.dataset("/once_scattered/down", {w_count, layers, angles, 4, 4}, down, storage);
+    file.dataset("/once_scattered/up", {w_count, layers, angles, 4, 4}, up, storage);
+}
+
 void write_provenance(hdf5::Writer& file, const brdf::Provenance& provenance) {
     const std::string group = "/provenance";
     file.group(group);
@@ -183,6 +226,34 @@ std::vector<brdf::BodyModes> read_body(const hdf5::Reader& file, hsize_t wavelen
     return body;
 }
 
+std::vector<std::vector<brdf::OnceScattered>> read_once_scattered(const hdf5::Reader& file, hsize_t wavelengths,
+                                                                  hsize_t angles) {
+    if (!file.has("/once_scattered")) return {};
+    const auto index = read_shaped(file, "/once_scattered/index_ratio", {wavelengths, 0});
+    const hsize_t layers = index.shape[1];
+    const auto thickness = read_shaped(file, "/once_scattered/optical_thickness", {wavelengths, layers});
+    const auto scattering = read_shaped(file, "/once_scattered/scattering", {wavelengths, layers, 6, 0});
+    const auto down = read_shaped(file, "/once_scattered/down", {wavelengths, layers, angles, 4, 4}),
+               up = read_shaped(file, "/once_scattered/up", {wavelengths, layers, angles, 4, 4});
+    const hsize_t orders = scattering.shape[3];
+    std::vector<std::vector<brdf::OnceScattered>> result(wavelengths);
+    for (hsize_t at = 0; at < wavelengths * layers; ++at) {
+        brdf::OnceScattered layer{index.values[at], thickness.values[at], {}, {}, {}};
+        for (hsize_t list = 0; list < 6; ++list) {
+            const auto first = scattering.values.begin() + static_cast<std::ptrdiff_t>((at * 6 + list) * orders);
+            (layer.scattering.*coefficient_lists[list]).assign(first, first + static_cast<std::ptrdiff_t>(orders));
+        }
+        // A layer that only fills up the array is none.
+        if (std::ranges::all_of(layer.scattering.alpha1, [](double x) { return x == 0.0; })) continue;
+        for (hsize_t a = 0; a < angles; ++a) {
+            layer.down.emplace_back(RowMajorMueller::Map(down.values.data() + 16 * (at * angles + a)));
+            layer.up.emplace_back(RowMajorMueller::Map(up.values.data() + 16 * (at * angles + a)));
+        }
+        result[at / layers].push_back(std::move(layer));
+    }
+    return result;
+}
+
 brdf::Provenance read_provenance(const hdf5::Reader& file) {
     brdf::Provenance provenance;
     const std::string group = "/provenance";
@@ -224,11 +295,13 @@ void write_table_hdf5(const MuellerTable& table, const std::filesystem::path& pa
     {
         hdf5::Writer file;
         file.attribute("/", "format", format_name);
-        file.attribute("/", "format_version", mueller_table_format_version);
+        const bool closed_forms = std::ranges::any_of(table.once_scattered, [](const auto& x) { return !x.empty(); });
+        file.attribute("/", "format_version", closed_forms ? mueller_table_format_version : 1);
         file.attribute("/", "title", "Mueller BRDF of a coating");
         for (const Convention& convention : conventions) file.attribute("/", convention.name, convention.text);
         write_axes(file, table, orders);
         write_values(file, table, orders, options);
+        write_once_scattered(file, table);
         write_provenance(file, table.provenance);
         image = file.image();
     }
@@ -247,6 +320,7 @@ MuellerTable read_table_hdf5(const std::filesystem::path& path) {
     table.body = read_body(file, wavelengths, table.mu.size());
     table.specular_surface = read_specular(file, "specular_surface", wavelengths, angles);
     table.specular_coherent = read_specular(file, "specular_coherent", wavelengths, angles);
+    table.once_scattered = read_once_scattered(file, wavelengths, angles);
     if (file.has("error_estimate")) table.error_estimate = read_axis(file, "error_estimate");
     table.provenance = read_provenance(file);
     table.validate({path.string()});

@@ -7,7 +7,8 @@
 
 namespace patina::io {
 
-inline constexpr int mueller_table_format_version = 1;
+// Version 2 adds once scattered light in closed form; a table without it is written as version 1.
+inline constexpr int mueller_table_format_version = 2;
 
 struct TableWriteOptions {
     bool single_precision = false;  // /body as float32: half the size, 6e-8 relative rounding

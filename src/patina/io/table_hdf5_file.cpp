@@ -9,7 +9,7 @@
 #include "patina/core/contract.h"
 #include "patina/core/error.h"
 #include "patina/core/files.h"
-#include "patina/core/hash.h"
+#include "patina/core/fingerprint.h"
 
 namespace patina::io::hdf5 {
 
@@ -142,7 +142,9 @@ std::string Writer::image() {
     require(size > 0, "the file");
     std::string bytes(static_cast<std::size_t>(size), '\0');
     require(H5Fget_file_image(file_, bytes.data(), bytes.size()) == size, "the file");
-    return bytes + seal_of(fnv1a_64(bytes));
+    Fingerprint fingerprint;
+    fingerprint.add(bytes);
+    return bytes + seal_of(fingerprint.value());
 }
 
 namespace {
@@ -160,13 +162,13 @@ void check_seal(const std::string& path) {
     if (!stream || !seal.starts_with(seal_label)) return;
 
     stream.seekg(0);
-    std::uint64_t hash = fnv1a_64("");
+    Fingerprint fingerprint;
     std::string block(std::size_t{1} << 20, '\0');
     for (std::streamoff left = length; left > 0 && stream; left -= stream.gcount()) {
         stream.read(block.data(), std::min<std::streamoff>(left, std::ssize(block)));
-        hash = fnv1a_64(std::string_view(block).substr(0, static_cast<std::size_t>(stream.gcount())), hash);
+        fingerprint.add(std::string_view(block).substr(0, static_cast<std::size_t>(stream.gcount())));
     }
-    if (seal != seal_of(hash))
+    if (seal != seal_of(fingerprint.value()))
         throw input_error({path}, "the file is damaged", "its bytes are not those that were written",
                           "make it again, or take it from a backup");
 }

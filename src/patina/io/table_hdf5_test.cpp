@@ -3,6 +3,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <random>
 
 #include <fmt/format.h>
@@ -81,6 +82,40 @@ void expect_equal(const MuellerTable& a, const MuellerTable& b, double tolerance
     EXPECT_EQ(a.provenance.software, b.provenance.software);
     EXPECT_EQ(a.provenance.solver, b.provenance.solver);
     EXPECT_EQ(a.provenance.notes, b.provenance.notes);
+}
+
+// Version 2: a wavelength with two layers of once scattered light of different order, one of them without end, and
+// wavelengths with none.
+TEST_F(TableHdf5, KeepsOnceScatteredLight) {
+    MuellerTable table = sample_table();
+    const std::size_t angles = table.specular_theta_deg.size();
+    const std::vector<optics::Mueller> light(angles, optics::Mueller(0.5 * optics::Mueller::Identity()));
+    const std::vector<optics::Mueller> dark(angles, optics::Mueller::Zero());
+    const optics::ExpansionCoefficients rayleigh{{1, 0, 0.5}, {0, 0, 3},   {0, 0, 0},
+                                                 {0, 1.5, 0}, {0, 0, 1.2}, {0, 0, 0}};
+    optics::ExpansionCoefficients longer = rayleigh;
+    for (auto* list : {&longer.alpha1, &longer.alpha2, &longer.alpha3, &longer.alpha4, &longer.beta1, &longer.beta2})
+        list->push_back(0.1);
+    table.once_scattered.resize(3);
+    table.once_scattered[1] = {{1.5, 0.7, rayleigh, light, light},
+                               {1.6, std::numeric_limits<double>::infinity(), longer, light, dark}};
+    write_table_hdf5(table, file("a.h5"));
+    const MuellerTable back = read_table_hdf5(file("a.h5"));
+    ASSERT_EQ(back.once_scattered.size(), 3u);
+    EXPECT_TRUE(back.once_scattered[0].empty());
+    ASSERT_EQ(back.once_scattered[1].size(), 2u);
+    EXPECT_EQ(back.once_scattered[1][1].index_ratio, 1.6);
+    EXPECT_TRUE(std::isinf(back.once_scattered[1][1].optical_thickness));
+    EXPECT_EQ(back.once_scattered[1][1].scattering.beta2, longer.beta2);
+    // The shorter list is filled up with zeros, which add nothing but the rounding of another table's angles.
+    const optics::Mueller expected = table.evaluate(550, 0.6, 0.8, 1.0), found = back.evaluate(550, 0.6, 0.8, 1.0);
+    EXPECT_LT((expected - found).cwiseAbs().maxCoeff(), 1e-14);
+    EXPECT_GT((expected - sample_table().evaluate(550, 0.6, 0.8, 1.0)).cwiseAbs().maxCoeff(), 1e-3);
+
+    // Without it there is no group.
+    table.once_scattered.clear();
+    write_table_hdf5(table, file("b.h5"));
+    EXPECT_TRUE(read_table_hdf5(file("b.h5")).once_scattered.empty());
 }
 
 TEST_F(TableHdf5, RoundTripKeepsEveryBit) {

@@ -159,6 +159,9 @@ MuellerTable at_wavelengths(const MuellerTable& table, const std::vector<double>
     brdf::TabulateOptions options{wavelengths_nm, static_cast<int>(table.mu.size()), 1};
     for (const brdf::BodyModes& body : table.body)
         options.orders = std::max(options.orders, static_cast<int>(body.modes.size()));
+    for (const auto& layers : table.once_scattered)
+        for (const brdf::OnceScattered& layer : layers)
+            options.orders = std::max(options.orders, layer.scattering.order() + 1);
     return brdf::tabulate(function_of(table), options);
 }
 

@@ -28,6 +28,8 @@ Facts inspect_table(const std::filesystem::path& path) {
         {"Fourier orders", std::to_string(orders)},
         {"units", "1/sr; S_out = sum of f S_in cos(theta_i) d omega"},
         {"convention", "Stokes (I,Q,U,V), Q = I_par - I_perp to the meridian plane, exp(-i w t); docs/conventions.md"}};
+    if (!table.once_scattered.empty())
+        facts.push_back({"once scattered light", "in closed form beside the modes (sharp forward peaks)"});
     for (const double theta_deg : {0.0, 45.0, 75.0})
         facts.push_back({fmt::format("reflectance at {:.0f} deg", theta_deg),
                          fmt::format("{:.4f} (body, unpolarized light, {:g} nm)",

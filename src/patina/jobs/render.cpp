@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "patina/coating/spectral_medium.h"
 #include "patina/core/error.h"
 #include "patina/core/files.h"
 #include "patina/io/bitmap_file.h"
@@ -70,6 +71,7 @@ class Cache {
 
 render::SceneResources scene_resources(std::vector<std::string>& warnings, const JobControl& control) {
     const auto tables = std::make_shared<Cache<brdf::MuellerTable>>();
+    const auto media = std::make_shared<Cache<optics::SpectralMedium>>();
     const auto half_angle_tables = std::make_shared<Cache<brdf::HalfAngleTable>>();
     const auto merl_tables = std::make_shared<Cache<brdf::MerlTable>>();
     const auto meshes = std::make_shared<Cache<TriangleMesh>>();
@@ -77,6 +79,14 @@ render::SceneResources scene_resources(std::vector<std::string>& warnings, const
     render::SceneResources resources;
     resources.load_brdf_table = [tables, control](const std::string& path) {
         return tables->get(path, [&] { return load_table(path, control); });
+    };
+    resources.load_medium = [media](const std::string& path, int layer) {
+        return media->get(fmt::format("{}|{}", path, layer), [&] {
+            const coating::Recipe recipe = coating::read_recipe(path);
+            const bool one = recipe.is_wavelength_independent();
+            return std::make_shared<const optics::SpectralMedium>(
+                coating::spectral_medium(recipe, layer, 380, recipe_step_nm, one ? 1 : 400 / recipe_step_nm + 1));
+        });
     };
     resources.load_half_angle_table = [half_angle_tables](const std::string& path) {
         return half_angle_tables->get(
@@ -105,12 +115,12 @@ namespace {
 // Everything that decides the picture: the scene with the files it names, solved recipes, options, the program.
 class PictureIdentity {
   public:
-    explicit PictureIdentity(const Properties& tree) { scene_.add(tree); }
+    explicit PictureIdentity(const Properties& tree) { add_to(scene_, tree); }
     // Solved recipes name files of their own.
     void watch(render::SceneResources& resources) {
         resources.load_brdf_table = [this, load = resources.load_brdf_table](const std::string& path) {
             const auto table = load(path);
-            if (fs::path(path).extension() == ".toml") scene_.add(*table);
+            if (fs::path(path).extension() == ".toml") add_to(scene_, *table);
             return table;
         };
     }
@@ -158,9 +168,12 @@ render::Pictures render_scene(const RenderRequest& request, const JobControl& co
         render::render_parts(*scene, request.options, control, checkpoint_of(request, file, warnings));
     const bool stopped = pictures.whole.metadata.contains("stopped");
     if (!request.checkpoint.empty() && !stopped && !request.keep_checkpoint) file.remove();
+    const std::shared_ptr<const Properties> node = tree->only_child("integrator");
+    const std::string integrator = request.options.integrator.value_or(node ? node->type : "path");
     const auto add_provenance = [&](StokesImage& image) {
         image.metadata["command"] = request.command;
         image.metadata["scene"] = request.scene.string();
+        image.metadata["integrator"] = integrator;
         image.metadata["software"] = std::string("patina ") + PATINA_VERSION;
         for (size_t i = 0; i < warnings.size(); ++i) image.metadata[fmt::format("warning_{:02}", i)] = warnings[i];
     };
@@ -188,7 +201,8 @@ void check_picture_output(const fs::path& path) {
 
 std::vector<std::string> write_picture(const fs::path& path, const StokesImage& image, bool stokes_rgb, bool png) {
     io::StokesExrOptions options;
-    options.stokes_rgb = stokes_rgb;
+    const auto integrator = image.metadata.find("integrator");
+    options.stokes_rgb = stokes_rgb || (integrator != image.metadata.end() && integrator->second == "stokes");
     io::write_stokes_exr(path, image, options);
     std::vector<std::string> written{path.string()};
     if (png) {

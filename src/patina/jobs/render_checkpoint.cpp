@@ -72,24 +72,12 @@ void expect_same(const fs::path& path, const json& then, const RenderIdentity& n
 
 }  // namespace
 
-void Fingerprint::add(std::string_view bytes) {
-    const auto mix = [&](std::uint64_t word) {
-        // The multiplier of Knuth's (2011, MMIX) linear congruential generator.
-        hash_ = (hash_ ^ word) * 6364136223846793005u;
-        hash_ ^= hash_ >> 29;
+void add_to(Fingerprint& fingerprint, const Properties& node) {
+    // With its length, so that no two lists of texts look alike.
+    const auto add = [&](std::string_view text) {
+        fingerprint.add(text);
+        fingerprint.add(static_cast<double>(text.size()));
     };
-    mix(bytes.size() + 1);
-    for (; bytes.size() >= 8; bytes.remove_prefix(8)) {
-        std::uint64_t word;
-        std::memcpy(&word, bytes.data(), 8);
-        mix(word);
-    }
-    std::uint64_t rest = 0;
-    std::memcpy(&rest, bytes.data(), bytes.size());
-    mix(rest);
-}
-
-void Fingerprint::add(const Properties& node) {
     add(node.category);
     add(node.type);
     add(node.id);
@@ -104,14 +92,14 @@ void Fingerprint::add(const Properties& node) {
     }
     for (const Properties::Child& child : node.children) {
         add(child.name);
-        add(*child.node);
+        add_to(fingerprint, *child.node);
     }
     add("end");
 }
 
-void Fingerprint::add(const brdf::MuellerTable& table) {
+void add_to(Fingerprint& fingerprint, const brdf::MuellerTable& table) {
     const auto add_numbers = [&](const double* data, std::size_t count) {
-        add(std::string_view(reinterpret_cast<const char*>(data), count * sizeof(double)));
+        for (std::size_t i = 0; i < count; ++i) fingerprint.add(data[i]);
     };
     add_numbers(table.wavelengths_nm.data(), table.wavelengths_nm.size());
     add_numbers(table.mu.data(), table.mu.size());
@@ -120,10 +108,6 @@ void Fingerprint::add(const brdf::MuellerTable& table) {
     for (const auto* part : {&table.specular_surface, &table.specular_coherent})
         for (const auto& row : *part)
             for (const optics::Mueller& matrix : row) add_numbers(matrix.data(), 16);
-}
-
-std::string Fingerprint::hex() const {
-    return fmt::format("{:016x}", hash_);
 }
 
 void add_options(const render::RenderOptions& options, RenderIdentity& identity) {

@@ -4,30 +4,20 @@
 // The file is of the machine that wrote it: a line that says what it is, the length of a JSON document (8 bytes), the
 // document (samples done; everything that decides the picture; sizes of the films), the films, and a hash of all of it.
 
-#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
 
 #include "patina/brdf/mueller_table.h"
+#include "patina/core/fingerprint.h"
 #include "patina/core/properties.h"
 #include "patina/render/render.h"
 
 namespace patina::jobs {
 
-// A hash of 64 bits: tells changed files apart, and does not resist forgery.
-class Fingerprint {
-  public:
-    void add(std::string_view bytes);
-    // A scene: every name and value; of the files it names their content, not their place.
-    void add(const Properties& node);
-    void add(const brdf::MuellerTable& table);
-    std::string hex() const;
-    std::uint64_t value() const { return hash_; }
-
-  private:
-    std::uint64_t hash_ = 0x243f6a8885a308d3u;
-};
+// A scene: every name and value; of the files it names their content, not their place.
+void add_to(Fingerprint& fingerprint, const Properties& node);
+void add_to(Fingerprint& fingerprint, const brdf::MuellerTable& table);
 
 // What decides a picture, in words, by what the user calls it.
 using RenderIdentity = std::map<std::string, std::string>;

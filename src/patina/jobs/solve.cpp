@@ -1,15 +1,20 @@
 #include "patina/jobs/solve.h"
 
 #include <atomic>
+#include <memory>
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "patina/coating/optical_problem.h"
 #include "patina/core/constants.h"
 #include "patina/core/error.h"
 #include "patina/core/parallel.h"
+#include "patina/jobs/checkpoint.h"
+#include "patina/jobs/solve_checkpoint.h"
 #include "patina/jobs/stream_choice.h"
+#include "patina/jobs/wavelength_choice.h"
 #include "patina/version.h"
 
 namespace patina::jobs {
@@ -30,13 +35,19 @@ void check_wavelengths(const std::vector<double>& wavelengths_nm) {
     }
 }
 
-std::vector<double> chosen_wavelengths(const coating::Recipe& recipe, const SolveRequest& request) {
+WavelengthChoice chosen_wavelengths(const coating::Recipe& recipe, const SolveRequest& request,
+                                    const JobControl& control) {
     check_wavelengths(request.wavelengths_nm);
-    if (!request.wavelengths_nm.empty()) return request.wavelengths_nm;
-    if (recipe.is_wavelength_independent()) return {550.0};
+    if (!request.wavelengths_nm.empty()) return {request.wavelengths_nm};
+    if (recipe.is_wavelength_independent()) return {{550.0}};
+    if (request.automatic_range_nm) {
+        const auto [from, to] = *request.automatic_range_nm;
+        check_wavelengths({from, to});
+        return choose_wavelengths(recipe, from, to, request.tolerance, control);
+    }
     std::vector<double> visible;
     for (int wavelength = 380; wavelength <= 780; wavelength += 5) visible.push_back(wavelength);
-    return visible;
+    return {visible};
 }
 
 // Relative accuracy asked of cross sections and expansion coefficients, and the largest share of f00 that it was seen
@@ -93,7 +104,7 @@ void check_streams(int streams) {
 }
 
 SolvePlan make_plan(const std::vector<double>& wavelengths_nm, const std::vector<OpticalProblem>& problems) {
-    SolvePlan plan{wavelengths_nm, 0, 0, {}, {}};
+    SolvePlan plan{wavelengths_nm, {}, 0, 0, {}, {}};
     std::set<std::string> notes, citations;
     for (const OpticalProblem& optical : problems) {
         plan.largest_expansion_order = std::max(plan.largest_expansion_order, order_of(optical));
@@ -129,6 +140,9 @@ void keep_only(brdf::MuellerTable& table, const std::vector<char>& keep) {
     filter(table.specular_surface);
     filter(table.specular_coherent);
     if (!table.error_estimate.empty()) filter(table.error_estimate);
+    filter(table.once_scattered);
+    if (std::ranges::all_of(table.once_scattered, [](const auto& layers) { return layers.empty(); }))
+        table.once_scattered.clear();
 }
 
 brdf::Provenance provenance(const coating::Recipe& recipe, const SolveRequest& request, const SolvePlan& plan) {
@@ -142,6 +156,25 @@ brdf::Provenance provenance(const coating::Recipe& recipe, const SolveRequest& r
         fmt::format("upper bound of the error of any element of the body BRDF for zenith angles up to {:g} deg, 1/sr",
                     largest_judged_zenith_deg);
     return p;
+}
+
+// What the checkpoint's results depend on, in the order in which a difference is told.
+Checkpoint::Identity identity(const coating::Recipe& recipe, const SolveRequest& request,
+                              const std::vector<double>& wavelengths_nm, const std::vector<OpticalProblem>& problems) {
+    std::vector<rt::Problem> of_transfer;
+    for (const OpticalProblem& optical : problems) of_transfer.push_back(optical.problem);
+    return {{"recipe", recipe.text},
+            {"solver", request.solver},
+            {"tolerance", fmt::format("{:g}", request.tolerance)},
+            {"number of streams", request.streams == 0 ? "chosen" : std::to_string(request.streams)},
+            {"list of wavelengths", fmt::format("{}", fmt::join(wavelengths_nm, ", "))},
+            {"version of patina", PATINA_VERSION},
+            {"set of optical constants", fingerprint_of(of_transfer)}};
+}
+
+std::unique_ptr<Checkpoint> open_checkpoint(const SolveRequest& request, const Checkpoint::Identity& identity) {
+    if (request.checkpoint.empty()) return std::make_unique<Checkpoint>();
+    return std::make_unique<Checkpoint>(request.checkpoint, identity, request.resume);
 }
 
 // One run of the table's wavelengths with a number of streams.
@@ -160,9 +193,12 @@ class Solving {
         : request_(request),
           control_(control),
           solver_(rt::solver_named(request.solver)),
-          wavelengths_nm_(chosen_wavelengths(recipe, request)),
+          wavelength_choice_(chosen_wavelengths(recipe, request, control)),
+          wavelengths_nm_(wavelength_choice_.wavelengths_nm),
           problems_(set_up(recipe, wavelengths_nm_, request, control)),
-          references_(solver_, recipe, wavelengths_nm_, scattering_tolerance(request), fourier_tolerance(request)),
+          checkpoint_(open_checkpoint(request, identity(recipe, request, wavelengths_nm_, problems_))),
+          references_(solver_, recipe, wavelengths_nm_, request.tolerance, scattering_tolerance(request),
+                      fourier_tolerance(request), *checkpoint_),
           pilots_(pilot_wavelengths(problems_)) {
         check_streams(request.streams);
         for (const OpticalProblem& optical : problems_) {
@@ -175,6 +211,7 @@ class Solving {
 
     SolvePlan plan() {
         SolvePlan plan = make_plan(wavelengths_nm_, problems_);
+        tell_wavelength_error(plan);
         plan.streams = request_.streams;
         if (plan.streams == 0)
             plan.streams = is_statistical(solver_)
@@ -186,7 +223,12 @@ class Solving {
     SolveResult run(const coating::Recipe& recipe);
 
   private:
+    void tell_wavelength_error(SolvePlan& plan) const;
     Run solve_all(int streams);
+    SolvedWavelength solve_one(size_t w, int streams);
+    std::vector<brdf::OnceScattered> once_scattered(size_t w, int streams) const {
+        return once_scattered_of(solver_, problems_[w].problem, streams, request_.tolerance);
+    }
     // Upper bounds of the error at each wavelength, 1/sr.
     std::vector<double> estimate(const Run& run);
     double stream_error(const Run& run, size_t w);
@@ -194,15 +236,27 @@ class Solving {
         return error <= request_.tolerance * run.scale[w];
     }
     void fill(brdf::MuellerTable& table, Run& run) const;
+    // Refractive index of the medium that the table's directions are in: one number, or one a wavelength.
+    std::string medium_index(const std::vector<char>& done) const;
 
     const SolveRequest& request_;
     const JobControl& control_;
     const rt::Solver& solver_;
+    WavelengthChoice wavelength_choice_;
     std::vector<double> wavelengths_nm_;
     std::vector<OpticalProblem> problems_;
+    std::unique_ptr<Checkpoint> checkpoint_;
     References references_;
     std::vector<size_t> pilots_;
 };
+
+void Solving::tell_wavelength_error(SolvePlan& plan) const {
+    if (!request_.automatic_range_nm || wavelengths_nm_.size() < 2) return;
+    plan.wavelength_error = wavelength_choice_.interpolation_error;
+    plan.notes.push_back(fmt::format(
+        "{} wavelengths chosen: linear interpolation between them errs by at most {:.1e}{}", wavelengths_nm_.size(),
+        wavelength_choice_.interpolation_error, wavelength_choice_.converged ? "" : ", more than the tolerance"));
+}
 
 Run Solving::solve_all(int streams) {
     const std::ptrdiff_t count = std::ssize(problems_);
@@ -214,23 +268,38 @@ Run Solving::solve_all(int streams) {
             {}};
     run.pilots.resize(count);
     std::atomic<int> finished = 0;
-    const rt::SolveOptions options{.streams = streams, .fourier_tolerance = fourier_tolerance(request_)};
-    const rt::SolveOptions half{.streams = half_streams(streams), .fourier_tolerance = fourier_tolerance(request_)};
     parallel_for(0, count, [&](std::ptrdiff_t w) {
         if (control_.stop_requested()) return;
-        run.reflections[w] = solver_.reflection(problems_[w].problem, options);
-        if (!is_statistical(solver_)) {
-            brdf::MuellerGrid grid = between_nodes(run.reflections[w]);
-            run.scale[w] = largest_intensity(grid);
-            run.difference_from_half[w] =
-                largest_difference(grid, between_nodes(solver_.reflection(problems_[w].problem, half)));
-            if (std::binary_search(pilots_.begin(), pilots_.end(), static_cast<size_t>(w)))
-                run.pilots[w] = std::move(grid);
-        }
+        SolvedWavelength solved = solve_one(w, streams);
+        if (!is_statistical(solver_) && std::binary_search(pilots_.begin(), pilots_.end(), static_cast<size_t>(w)))
+            run.pilots[w] = between_nodes({solved.reflection, once_scattered(w, streams)});
+        run.reflections[w] = std::move(solved.reflection);
+        run.scale[w] = solved.scale;
+        run.difference_from_half[w] = solved.difference_from_half;
         run.done[w] = 1;
         control_.report({"solving", ++finished, count, fmt::format("{:g} nm", wavelengths_nm_[w])});
     });
     return run;
+}
+
+SolvedWavelength Solving::solve_one(size_t w, int streams) {
+    const std::string key = fmt::format("table of {} streams at {} nm", streams, wavelengths_nm_[w]);
+    if (const auto kept = checkpoint_->find(key))
+        if (auto solved = to_solved_wavelength(*kept)) return std::move(*solved);
+    const rt::Problem& problem = problems_[w].problem;
+    rt::SolveOptions options{.streams = streams, .fourier_tolerance = fourier_tolerance(request_)};
+    BodySolution body = solve_body(solver_, problem, options, request_.tolerance);
+    SolvedWavelength solved;
+    if (!is_statistical(solver_)) {
+        const brdf::MuellerGrid grid = between_nodes(body);
+        options.streams = half_streams(streams);
+        solved.scale = largest_intensity(grid);
+        solved.difference_from_half =
+            largest_difference(grid, between_nodes(solve_body(solver_, problem, options, request_.tolerance)));
+    }
+    solved.reflection = std::move(body.reflection);
+    checkpoint_->add(key, to_values(solved));
+    return solved;
 }
 
 // The part of the error that more streams would take away, from solutions of finer single scattering.
@@ -274,19 +343,30 @@ void Solving::fill(brdf::MuellerTable& table, Run& run) const {
     table.body.resize(problems_.size());
     table.specular_surface.resize(problems_.size());
     table.specular_coherent.resize(problems_.size());
-    for (int i = 0; i <= 180; ++i) table.specular_theta_deg.push_back(0.5 * i);
+    table.specular_theta_deg = specular_angles_deg();
+    table.once_scattered.resize(problems_.size());
     const auto first = std::find(run.done.begin(), run.done.end(), 1) - run.done.begin();
     table.mu = run.reflections[first].mu;
     table.mu_weights = run.reflections[first].weights;
     for (size_t w = 0; w < problems_.size(); ++w) {
         table.body[w].modes = std::move(run.reflections[w].modes);
+        if (run.done[w]) table.once_scattered[w] = once_scattered(w, run.streams);
         fill_specular(table, problems_[w].problem, w);
     }
     keep_only(table, run.done);
 }
 
+std::string Solving::medium_index(const std::vector<char>& done) const {
+    std::vector<double> values;
+    for (size_t w = 0; w < problems_.size(); ++w)
+        if (done[w]) values.push_back(problems_[w].problem.refractive_index_above);
+    if (std::count(values.begin(), values.end(), values.front()) == std::ssize(values)) values.resize(1);
+    return fmt::format("{}", fmt::join(values, " "));
+}
+
 SolveResult Solving::run(const coating::Recipe& recipe) {
     SolveResult result;
+    result.resumed = checkpoint_->found_at_start();
     result.plan = plan();
     int& streams = result.plan.streams;
 
@@ -326,6 +406,7 @@ SolveResult Solving::run(const coating::Recipe& recipe) {
     result.table.error_estimate = error;
     fill(result.table, run);
     result.table.provenance = provenance(recipe, request_, result.plan);
+    result.table.provenance.notes[coating::medium_index_note] = medium_index(run.done);
     result.table.validate();
     return result;
 }

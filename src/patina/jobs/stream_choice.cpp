@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "patina/coating/optical_problem.h"
 #include "patina/core/error.h"
 #include "patina/core/parallel.h"
@@ -10,12 +12,15 @@
 namespace patina::jobs {
 
 References::References(const rt::Solver& solver, const coating::Recipe& recipe,
-                       const std::vector<double>& wavelengths_nm, double scattering_tolerance, double fourier_tolerance)
+                       const std::vector<double>& wavelengths_nm, double tolerance, double scattering_tolerance,
+                       double fourier_tolerance, Checkpoint& checkpoint)
     : solver_(solver),
       recipe_(recipe),
       wavelengths_nm_(wavelengths_nm),
+      tolerance_(tolerance),
       scattering_tolerance_(0.1 * scattering_tolerance),
-      fourier_tolerance_(0.1 * fourier_tolerance) {}
+      fourier_tolerance_(0.1 * fourier_tolerance),
+      checkpoint_(checkpoint) {}
 
 const brdf::MuellerGrid& References::at(std::size_t w, int streams) const {
     return grids_.at({w, streams});
@@ -34,10 +39,14 @@ void References::prepare(const std::vector<std::size_t>& wavelengths, int stream
 }
 
 brdf::MuellerGrid References::solve(std::size_t w, int streams) const {
+    const std::string key = fmt::format("reference of {} streams at {} nm", streams, wavelengths_nm_[w]);
+    if (const auto kept = checkpoint_.find(key, judged_values)) return to_grid(*kept);
     const coating::OpticalProblem optical =
         coating::optical_problem(recipe_, wavelengths_nm_[w], scattering_tolerance_);
-    return between_nodes(
-        solver_.reflection(optical.problem, {.streams = streams, .fourier_tolerance = fourier_tolerance_}));
+    const brdf::MuellerGrid grid = between_nodes(solve_body(
+        solver_, optical.problem, {.streams = streams, .fourier_tolerance = fourier_tolerance_}, tolerance_));
+    checkpoint_.add(key, to_values(grid));
+    return grid;
 }
 
 int finer_streams(int streams) {

@@ -6,6 +6,7 @@
 
 #include "patina/coating/recipe.h"
 #include "patina/core/progress.h"
+#include "patina/jobs/checkpoint.h"
 #include "patina/jobs/table_accuracy.h"
 #include "patina/rt/solver.h"
 
@@ -24,9 +25,9 @@ inline constexpr int fewest_streams = 6, most_streams = 72;
 class References {
   public:
     // `wavelengths_nm` are all of the table's; single scattering and Fourier series are ten times finer than the
-    // table's.
+    // table's. What is computed goes into `checkpoint`, and is taken from there when it was done before.
     References(const rt::Solver& solver, const coating::Recipe& recipe, const std::vector<double>& wavelengths_nm,
-               double scattering_tolerance, double fourier_tolerance);
+               double tolerance, double scattering_tolerance, double fourier_tolerance, Checkpoint& checkpoint);
 
     // The BRDF between nodes at wavelength w (a position) with exactly that many streams.
     const brdf::MuellerGrid& at(std::size_t w, int streams) const;
@@ -39,7 +40,8 @@ class References {
     const rt::Solver& solver_;
     const coating::Recipe& recipe_;
     const std::vector<double>& wavelengths_nm_;
-    double scattering_tolerance_, fourier_tolerance_;
+    double tolerance_, scattering_tolerance_, fourier_tolerance_;
+    Checkpoint& checkpoint_;
     std::map<std::pair<std::size_t, int>, brdf::MuellerGrid> grids_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <memory>
 #include <set>
 
 #include <fmt/format.h>
@@ -142,6 +143,19 @@ class Sweep {
         return coating::read_recipe(request_.recipe, settings);
     }
 
+    // The recipe's text at a point, whatever the thickness of the variable layer is there.
+    std::string composition(std::size_t point) const {
+        std::vector<std::string> settings = request_.settings;
+        for (const std::string& setting : grid_.settings(point)) settings.push_back(setting);
+        const int layer = coating::variable_layer(coating::read_recipe(request_.recipe, settings)).index;
+        for (const char* name : {"thickness_um", "optical_thickness"}) {
+            const std::string key = fmt::format("layers.{}.{}", layer, name);
+            for (const SweepAxis& axis : request_.axes)
+                if (axis.key == key) settings.push_back(key + "=1");
+        }
+        return coating::read_recipe(request_.recipe, settings).text;
+    }
+
     coating::PaintOptions options_for(const coating::Recipe& recipe) const {
         coating::PaintOptions options = request_.options;
         options.stack.wavelengths_nm = paint_wavelengths(recipe, options.stack.wavelengths_nm);
@@ -155,6 +169,8 @@ class Sweep {
         PaintRequest paint_request;
         paint_request.options = request_.options;
         paint_request.angular = false;
+        paint_request.options.stack.memory = memory_;
+        paint_request.options.stack.composition = composition(point);
         try {
             const PaintReport report = paint(recipe_of(point), paint_request, {{}, control_.cancel});
             points_[point] = sweep_point(report.metrics);
@@ -240,6 +256,7 @@ class Sweep {
     std::vector<std::string> keys_;
     std::vector<std::optional<SweepPoint>> points_;
     std::set<std::string> notes_;
+    std::shared_ptr<coating::StackMemory> memory_ = std::make_shared<coating::StackMemory>();
     SweepResult result_;
 };
 

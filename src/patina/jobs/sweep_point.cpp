@@ -10,7 +10,7 @@
 #include "patina/coating/paint_metrics_colour.h"
 #include "patina/core/error.h"
 #include "patina/core/files.h"
-#include "patina/core/hash.h"
+#include "patina/core/fingerprint.h"
 #include "patina/version.h"
 
 namespace patina::jobs {
@@ -97,6 +97,13 @@ class Constants {
         for (const double wavelength : wavelengths_nm_) text_ += fmt::format("{} ", base.reflectance(wavelength));
     }
     void add(const coating::MetalBase& base) { add(base.material); }
+    void add(const coating::TableBase& base) {
+        // Reflectances at a few angles tell tables apart that have the same name.
+        for (const double wavelength : wavelengths_nm_)
+            for (const double mu : {0.2, 0.5, 0.9})
+                text_ += fmt::format("{} {} ", base.table->body_albedo(wavelength, mu),
+                                     base.table->specular(wavelength, mu)(0, 0));
+    }
 
     const coating::Recipe& recipe_;
     const std::vector<double>& wavelengths_nm_;
@@ -165,7 +172,9 @@ std::string sweep_point_key(const coating::Recipe& recipe, const coating::PaintO
                                         fmt::join(stack.wavelengths_nm, " "), stack.tolerance, stack.streams,
                                         stack.solver, options.white_reflectance, options.wanted_contrast_ratio,
                                         Constants(recipe, stack.wavelengths_nm).text());
-    return fmt::format("{:016x}", fnv1a_64(all));
+    Fingerprint fingerprint;
+    fingerprint.add(all);
+    return fingerprint.hex();
 }
 
 void write_sweep_point(const std::filesystem::path& path, const std::string& key,

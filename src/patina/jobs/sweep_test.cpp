@@ -4,10 +4,12 @@
 #include <fstream>
 #include <limits>
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include "patina/core/error.h"
 #include "patina/core/files.h"
+#include "patina/jobs/paint.h"
 #include "patina/jobs/sweep_point.h"
 
 namespace patina::jobs {
@@ -101,6 +103,24 @@ TEST_F(SweepFolder, AChangedRecipeOrOptionComputesAgain) {
     SweepRequest other = request();
     other.options.white_reflectance = 0.9;
     EXPECT_EQ(sweep(other).reused, 0u);
+}
+
+// Points share work; that must not show in a single bit.
+TEST_F(SweepFolder, PointsHaveTheBitsOfIndependentReports) {
+    SweepRequest thickness = request();
+    thickness.axes = {parse_sweep_axis("layers.0.thickness_um=5:50:3")};
+    const SweepResult result = sweep(thickness);
+    ASSERT_EQ(result.values.size(), 3u);
+    for (std::size_t p = 0; p < 3; ++p) {
+        PaintRequest alone{.options = thickness.options, .angular = false, .target_lab = {}, .command = {}};
+        const coating::Recipe recipe = coating::read_recipe(
+            thickness.recipe, {fmt::format("layers.0.thickness_um={}", thickness.axes[0].values[p])});
+        const SweepPoint point = sweep_point(paint(recipe, alone).metrics);
+        for (std::size_t q = 0; q < point.quantities.size(); ++q)
+            if (std::isfinite(point.quantities[q])) {
+                EXPECT_EQ(result.values[p][q], point.quantities[q]) << result.columns[q];
+            }
+    }
 }
 
 TEST_F(SweepFolder, DamagedPointsAreComputedAgain) {

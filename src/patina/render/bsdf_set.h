@@ -6,6 +6,7 @@
 #include "patina/render/bsdfs/conductor.h"
 #include "patina/render/bsdfs/dielectric.h"
 #include "patina/render/bsdfs/diffuse.h"
+#include "patina/render/bsdfs/dipole.h"
 #include "patina/render/bsdfs/lafortune.h"
 #include "patina/render/bsdfs/mask.h"
 #include "patina/render/bsdfs/measured.h"
@@ -30,6 +31,7 @@ struct Bsdf {
                               Dielectric, ThinDielectric, RoughDielectric,     // interfaces
                               Conductor, RoughConductor,                       // metals
                               Plastic, RoughPlastic, PolarizedPlastic, Paint,  // coatings
+                              Dipole,                                          // translucent matter
                               MeasuredPolarized, Merl,                         // tables
                               LinearPolarizer, Retarder, CircularPolarizer,    // polarization optics
                               TwoSided, Blend, Mask, NormalMap, BumpMap, Null>;

@@ -128,7 +128,7 @@ Film::Film(const FilmSettings& settings, const ColourMatching& matching, bool wi
     }
 }
 
-void Film::end_batch(std::size_t pixel, int samples) {
+void Film::end_batch(std::size_t pixel, [[maybe_unused]] int samples) {
     Float4* colour = &sums_[pixel * stride_] + bins_;
     Float4* ends = &batches_[pixel * most_batches];
     // Join the batches two by two when this one is the first of twice the size.

@@ -1,8 +1,11 @@
 #include "patina/render/medium.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "patina/core/error.h"
+#include "patina/render/medium_coefficients.h"
 #include "patina/render/plugins.h"
 
 namespace patina::render {
@@ -32,27 +35,6 @@ Phase build_phase(const Properties& node, const PhaseBuilder& builder) {
     throw input_error(node.where, fmt::format("\"{}\" is no phase function", node.type));
 }
 
-double positive_or_zero(const Properties& node, const char* name, double fallback) {
-    const double value = node.number(name, fallback);
-    if (!(value >= 0) || !std::isfinite(value))
-        throw input_error(node.location_of(name), fmt::format("{} must not be negative", name),
-                          fmt::format("it is {}", value));
-    return value;
-}
-
-// A coefficient per length, 0 .. infinity exclusive.
-Spectrum coefficient(const Properties& node, const char* name) {
-    const Spectrum table = property_table(*node.spectrum(name), node.location_of(name));
-    if (!(table.smallest() >= 0) || !std::isfinite(table.largest()))
-        throw input_error(node.location_of(name), fmt::format("{} must not be negative", name),
-                          fmt::format("it goes down to {}", table.smallest()));
-    return table;
-}
-
-Spectrum scaled(const Spectrum& table, double factor) {
-    return Spectrum([&](double nm) { return factor * table.at(Wavelengths::all_at(static_cast<float>(nm)))[0]; });
-}
-
 // Extinction and albedo as sigma_t and albedo, or as sigma_a and sigma_s.
 void read_coefficients(const Properties& node, Medium& medium) {
     const bool by_parts = node.has("sigma_a") || node.has("sigma_s");
@@ -60,14 +42,14 @@ void read_coefficients(const Properties& node, Medium& medium) {
         throw input_error(node.where, "a medium is given by sigma_t and albedo or by sigma_a and sigma_s",
                           "both are given", "leave one pair out");
     if (!by_parts) {
-        medium.extinction = node.has("sigma_t") ? coefficient(node, "sigma_t") : Spectrum(1.0f);
+        medium.extinction = coefficient(node, "sigma_t", 1);
         medium.albedo = Spectrum(0.75f);
         if (const auto albedo = node.spectrum("albedo"))
             medium.albedo = reflectance_table(*albedo, node.location_of("albedo"));
         return;
     }
-    const Spectrum absorption = node.has("sigma_a") ? coefficient(node, "sigma_a") : Spectrum(0.0f);
-    const Spectrum scattering = node.has("sigma_s") ? coefficient(node, "sigma_s") : Spectrum(0.0f);
+    const Spectrum absorption = coefficient(node, "sigma_a", 0);
+    const Spectrum scattering = coefficient(node, "sigma_s", 0);
     const auto at = [](const Spectrum& table, double nm) {
         return static_cast<double>(table.at(Wavelengths::all_at(static_cast<float>(nm)))[0]);
     };
@@ -81,8 +63,22 @@ void read_coefficients(const Properties& node, Medium& medium) {
 Medium homogeneous(const Properties& node, const PhaseBuilder& builder) {
     Medium medium;
     read_coefficients(node, medium);
-    medium.extinction = scaled(medium.extinction, positive_or_zero(node, "scale", 1));
+    medium.extinction = scaled(medium.extinction, factor(node, "scale"));
     if (const auto phase = node.only_child("phase")) medium.phase = build_phase(*phase, builder);
+    return medium;
+}
+
+// A layer of a recipe, in units of the scene.
+Medium paint(const Properties& node, const PhaseBuilder& builder) {
+    const LayerInScene layer = layer_in_scene(node, *builder.resources, *builder.notes);
+    Medium medium;
+    const double scale = layer.unit_um * factor(node, "scale");
+    medium.extinction = layer.spectrum([&](const optics::ScatteringMedium& m) { return scale * m.extinction_per_um; });
+    medium.albedo = layer.spectrum([](const optics::ScatteringMedium& m) { return std::min(1.0, m.albedo()); });
+    std::vector<optics::ExpansionCoefficients> expansions;
+    for (const optics::ScatteringMedium& m : layer.medium->media) expansions.push_back(m.expansion);
+    medium.phase =
+        MiePhase{std::make_shared<const PhaseTable>(expansions, layer.medium->first_nm, layer.medium->step_nm)};
     return medium;
 }
 
@@ -98,13 +94,20 @@ std::vector<PluginDescriptor> medium_descriptors() {
                     {"sigma_a", "spectrum", "1/scene unit", "0", ">= 0", "absorption, with sigma_s instead of both"},
                     {"sigma_s", "spectrum", "1/scene unit", "0", ">= 0", "scattering"},
                     {"scale", "number", "", "1", ">= 0", "factor on the coefficients"}}});
+    all.push_back({"medium",
+                   "paint",
+                   "A layer of a recipe without its surfaces and its thickness: particles in the binder.",
+                   {{"filename", "path", "", "", "", "the recipe (.toml)"},
+                    {"layer", "integer", "", "the topmost that scatters", ">= 0", "which, counted from the top"},
+                    {"scene_unit_um", "number", "um", "1", "> 0", "what a unit of length of the scene stands for"},
+                    {"scale", "number", "", "1", ">= 0", "factor on the coefficients"}}});
     for (PhaseEntry& entry : entries_of(static_cast<Phase*>(nullptr))) all.push_back(std::move(entry.descriptor));
     return all;
 }
 
 Medium build_medium(const Properties& node, const PhaseBuilder& builder) {
     expect_plugin(node);
-    Medium medium = homogeneous(node, builder);
+    Medium medium = node.type == "paint" ? paint(node, builder) : homogeneous(node, builder);
     expect_known_properties(node);
     return medium;
 }

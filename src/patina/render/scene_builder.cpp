@@ -44,20 +44,12 @@ class SceneBuilder {
         choose_sensor();
         scene_->geometry.commit();
         build_camera();
-        note_white();
+        scene_->notes["white"] = lit_by_daylight(root_) ? "D65" : "E";
         scene_->lights = Lights(std::move(emitters_), scene_->geometry, std::move(states_));
         return scene_;
     }
 
   private:
-    // For the white balance of a preview.
-    void note_white() {
-        const Vec3 white = white_of_emitters(emitters_, scene_->geometry, *scene_->matching);
-        if (white.minCoeff() > 0)
-            scene_->notes["white_xyz"] =
-                fmt::format("{:.5f} {:.5f} {:.5f}", white[0] / white[1], 1.0, white[2] / white[1]);
-    }
-
     void choose_sensor() {
         std::tie(scene_->sensor_node, scene_->sensor_shape) = chosen_sensor();
         const Shutter shutter = build_shutter(*scene_->sensor_node);

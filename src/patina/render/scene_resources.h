@@ -11,6 +11,7 @@
 #include "patina/core/bitmap.h"
 #include "patina/core/mesh.h"
 #include "patina/optics/refractive_index.h"
+#include "patina/optics/scattering/spectral_medium.h"
 
 namespace patina::render {
 
@@ -25,6 +26,9 @@ struct SceneResources {
 
     // A BRDF table, or a recipe that is solved first.
     std::function<std::shared_ptr<const brdf::MuellerTable>(const std::string& path)> load_brdf_table;
+
+    // A layer of a recipe as a medium; `layer` counts from the top, -1 is the topmost that scatters.
+    std::function<std::shared_ptr<const optics::SpectralMedium>(const std::string& path, int layer)> load_medium;
 
     // Measured tables: a .pbsdf file, a MERL .binary file.
     std::function<std::shared_ptr<const brdf::HalfAngleTable>(const std::string& path)> load_half_angle_table;

@@ -1,43 +1,43 @@
 #include "patina/render/scene_white.h"
 
+#include "patina/render/spectrum.h"
+#include "patina/render/vec.h"
+
 namespace patina::render {
 
 namespace {
 
-// An environment map's pixels colour it, but their mean is D65 for the greys most of them are.
-const Spectrum& light_of(const Emitter& emitter) {
-    struct Light {
-        const Spectrum& operator()(const AreaEmitter& e) const { return e.radiance; }
-        const Spectrum& operator()(const PointEmitter& e) const { return e.intensity; }
-        const Spectrum& operator()(const DirectionalEmitter& e) const { return e.irradiance; }
-        const Spectrum& operator()(const SpotEmitter& e) const { return e.intensity; }
-        const Spectrum& operator()(const ConstantEmitter& e) const { return e.radiance; }
-        const Spectrum& operator()(const EnvironmentEmitter& e) const { return e.illuminant; }
-    };
-    return std::visit(Light{}, emitter);
+bool looks_like_daylight(const SpectrumSpec& spec) {
+    if (spec.kind == SpectrumSpec::Kind::rgb) return true;
+    if (spec.kind != SpectrumSpec::Kind::sampled) return false;
+    const Spectrum table = emission_table(spec, {});
+    const ColourMatching matching;
+    Float4 xyz{};
+    for (int nm = 380; nm < 780; ++nm)
+        xyz += matching.xyz(nm - 380) * table.at(Wavelengths::all_at(static_cast<float>(nm)))[0];
+    const float sum = xyz[0] + xyz[1] + xyz[2];
+    if (!(sum > 0)) return false;
+    // CIE 15:2018: D65 and the equal-energy stimulus.
+    const Vec2 xy(xyz[0] / sum, xyz[1] / sum), daylight(0.3127f, 0.3290f), uniform(1 / 3.0f, 1 / 3.0f);
+    return (xy - daylight).norm() < (xy - uniform).norm();
 }
 
-Vec3 xyz_of(const Spectrum& light, const ColourMatching& matching) {
-    Vec3 sum = Vec3::Zero();
-    constexpr int step = 2;  // nm
-    for (int node = 0; node + step < spectrum_nodes; node += step) {
-        const float value = light.at(Wavelengths::all_at(wavelength_min_nm + static_cast<float>(node)))[0];
-        const Float4 xyz = matching.xyz(node);
-        sum += value * Vec3(xyz[0], xyz[1], xyz[2]);
-    }
-    return sum;
+bool shines_daylight(const Properties& emitter) {
+    if (emitter.type == "envmap") return true;
+    for (const Properties::Entry& entry : emitter.entries)
+        if (const auto* spec = std::get_if<SpectrumSpec>(&entry.value); spec && looks_like_daylight(*spec)) return true;
+    return false;
 }
 
 }  // namespace
 
-Vec3 white_of_emitters(const std::vector<Emitter>& emitters, const Geometry& geometry, const ColourMatching& matching) {
-    Vec3 white = Vec3::Zero();
-    for (const Emitter& emitter : emitters) {
-        const Spectrum& light = light_of(emitter);
-        const float average = light.average();
-        if (average > 0) white += xyz_of(light, matching) * (emitted_power(emitter, geometry) / average);
+bool lit_by_daylight(const Properties& scene) {
+    for (const Properties::Child& child : scene.children) {
+        const Properties& node = *child.node;
+        if (node.category == "emitter" && shines_daylight(node)) return true;
+        if (node.category == "shape" && lit_by_daylight(node)) return true;
     }
-    return white;
+    return false;
 }
 
 }  // namespace patina::render

@@ -1,14 +1,12 @@
 #pragma once
-// The colour of a scene's light: what an eye in it would take for white.
+// Which white a picture of a scene is meant to be seen with.
 
-#include <vector>
-
-#include "patina/render/emitters.h"
+#include "patina/core/properties.h"
 
 namespace patina::render {
 
-// XYZ of all emitters together, each by the power it sends into the scene (emitted_power()); zero in the dark. The
-// geometry must be committed.
-Vec3 white_of_emitters(const std::vector<Emitter>& emitters, const Geometry& geometry, const ColourMatching& matching);
+// Is the scene lit by what stands for daylight D65: colours given as rgb, surroundings from a picture, or a spectrum
+// whose chromaticity is nearer to D65's than to that of a uniform one? Looks at the scene's tree and marks nothing.
+bool lit_by_daylight(const Properties& scene);
 
 }  // namespace patina::render

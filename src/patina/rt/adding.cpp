@@ -34,6 +34,19 @@ Added add_interface(const Interface& interface, const Eigen::MatrixXd& below, Co
     return result;
 }
 
+Added add_rough_interface(const RoughInterface::Operators& interface, const Eigen::MatrixXd& below) {
+    if (below.size() == 0) return {interface.reflection_above, interface.transmission_down};
+    const Eigen::Index n = interface.reflection_below.rows();
+    Eigen::MatrixXd bounce = Eigen::MatrixXd::Identity(n, n);
+    bounce.noalias() -= interface.reflection_below * below;
+    Added result;
+    result.downward = bounce.partialPivLu().solve(interface.transmission_down);
+    const Eigen::MatrixXd upward = below * result.downward;
+    result.reflection = interface.reflection_above;
+    result.reflection.noalias() += interface.transmission_up * upward;
+    return result;
+}
+
 Eigen::MatrixXd base_reflection(const Base& base, const Medium& medium, int m, Components components) {
     if (std::holds_alternative<BlackBase>(base)) return {};
     const Eigen::Index n = static_cast<Eigen::Index>(medium.size()) * components.count;

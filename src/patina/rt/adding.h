@@ -5,6 +5,7 @@
 
 #include "patina/rt/boundary.h"
 #include "patina/rt/layer_operators.h"
+#include "patina/rt/rough_interface.h"
 
 namespace patina::rt {
 
@@ -20,6 +21,9 @@ Added add_layer(const LayerOperators<double>& layer, const Eigen::MatrixXd& belo
 // The same for an interface. `specular` includes the reflection at the interface itself.
 Added add_interface(const Interface& interface, const Eigen::MatrixXd& below, Components components, int rays_below,
                     bool specular);
+
+// The same for a rough interface; what it reflects itself is no delta and always included.
+Added add_rough_interface(const RoughInterface::Operators& interface, const Eigen::MatrixXd& below);
 
 // Reflection of the base below a medium; empty when black.
 Eigen::MatrixXd base_reflection(const Base& base, const Medium& medium, int m, Components components);

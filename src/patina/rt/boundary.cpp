@@ -85,18 +85,19 @@ Interface interface_between(const std::vector<Ray>& rays, const Medium& upper, c
     return result;
 }
 
-optics::Mueller smooth_mirror(const Base& base, double mu, double index) {
-    const auto* metal = std::get_if<MetalBase>(&base);
-    if (!metal || metal->roughness) return optics::Mueller::Zero();
-    return turned(optics::fresnel_reflection(mu, index, metal->refractive_index));
+optics::Mueller mirror_reflection(const Base& base, double mu, double index) {
+    if (const auto* metal = std::get_if<MetalBase>(&base); metal && !metal->roughness)
+        return optics::fresnel_reflection(mu, index, metal->refractive_index);
+    if (const auto* known = std::get_if<SurfaceBase>(&base)) return known->surface->specular(mu);
+    return optics::Mueller::Zero();
 }
 
 std::optional<RayMatrix> mirror(const Base& base, const Medium& medium) {
     const auto* metal = std::get_if<MetalBase>(&base);
-    if (!metal || metal->roughness) return std::nullopt;
+    if (!(metal && !metal->roughness) && !std::holds_alternative<SurfaceBase>(base)) return std::nullopt;
     RayMatrix result(medium.size(), medium.size());
     for (int i = 0; i < medium.size(); ++i)
-        result.add(i, i, turned(optics::fresnel_reflection(medium.mu[i], medium.index, metal->refractive_index)));
+        result.add(i, i, turned(mirror_reflection(base, medium.mu[i], medium.index)));
     return result;
 }
 
@@ -116,9 +117,8 @@ optics::Mueller coherent_reflection(const Problem& problem, const Ray& ray) {
     using optics::Mueller;
     Mueller below = Mueller::Zero();
     const Layer& last = problem.layers.back();
-    if (const auto* metal = std::get_if<MetalBase>(&problem.base); metal && !metal->roughness)
-        if (const double mu = ray.cosine_in(last.refractive_index); mu > 0.0)
-            below = optics::fresnel_reflection(mu, last.refractive_index, metal->refractive_index);
+    if (const double mu = ray.cosine_in(last.refractive_index); mu > 0.0)
+        below = mirror_reflection(problem.base, mu, last.refractive_index);
 
     // Add layers and interfaces from the base upwards; a ray that does not exist in a medium is reflected above it.
     for (std::size_t k = problem.layers.size(); k-- > 0;) {
@@ -126,6 +126,8 @@ optics::Mueller coherent_reflection(const Problem& problem, const Ray& ray) {
         const double n = layer.refractive_index;
         const double above = k > 0 ? problem.layers[k - 1].refractive_index : problem.refractive_index_above;
         const double mu = ray.cosine_in(n), mu_above = ray.cosine_in(above);
+        // A rough top leaves no ray unscattered.
+        if (k == 0 && problem.has_rough_top()) return Mueller::Zero();
         below = mu > 0.0 ? Mueller(std::exp(-2.0 * layer.optical_thickness / mu) * below) : Mueller::Zero();
         if (above == n || mu_above <= 0.0) continue;
         const Mueller outer = k > 0 ? optics::fresnel_reflection(mu_above, above, n) : Mueller::Zero();

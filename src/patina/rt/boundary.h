@@ -49,10 +49,11 @@ struct RayInterface {
     optics::Mueller transmission_down = optics::Mueller::Zero(), transmission_up = optics::Mueller::Zero();
 };
 RayInterface interface_of_ray(const Ray& ray, double upper, double lower);
-// Reflection of a smooth metal base at cosine mu in the medium of `index`; zero for other bases.
-optics::Mueller smooth_mirror(const Base& base, double mu, double index);
+// What a base reflects as a mirror at cosine mu in the medium of `index`: a smooth metal, the delta part of a table;
+// zero for other bases. Upward light is not multiplied by Delta.
+optics::Mueller mirror_reflection(const Base& base, double mu, double index);
 
-// Reflection of a metal base, ray by ray; nothing for other bases.
+// The same ray by ray, upward light times Delta; nothing for bases that are no mirror.
 std::optional<RayMatrix> mirror(const Base& base, const Medium& medium);
 // Adds the reflection of a Lambertian base at m = 0.
 void add_lambertian(const Base& base, const Medium& medium, Components components, Eigen::MatrixXd& reflection);

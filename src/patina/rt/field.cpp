@@ -106,7 +106,7 @@ std::vector<Added> FieldSolver::sweep_up(int m, Components components, std::vect
         below[p] = slabs[p].reflection;
         const bool starts_layer = p == 0 || levels_.slabs[p - 1].layer != k;
         if (starts_layer && media_.tops[k]) {
-            interfaces[p] = media_.add_interface_of(k, components, below[p]);
+            interfaces[p] = media_.add_interface_of(k, m, components, below[p]);
             if (p > 0) below[p] = interfaces[p].reflection;
         }
     }

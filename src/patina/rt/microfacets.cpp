@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "patina/core/constants.h"
+#include "patina/math/quadrature.h"
 #include "patina/optics/fresnel.h"
 
 namespace patina::rt {
@@ -19,7 +20,7 @@ struct Frame {
 
 Frame meridian(double cos_up, double phi) {
     const double sine = std::sqrt(std::max(0.0, 1.0 - cos_up * cos_up)), c = std::cos(phi), n = std::sin(phi);
-    return {{sine * c, sine * n, cos_up}, {cos_up * c, cos_up * n, -sine}, {-n, c, 0.0}};
+    return {{sine * c, sine * n, cos_up}, {cos_up * c, cos_up * n, -sine}, {n, -c, 0.0}};
 }
 
 // From the meridian plane into the plane whose p direction is given.
@@ -81,6 +82,32 @@ optics::Mueller Microfacets::operator()(double cos_i, double cos_o, double phi, 
     const double root = n_i.real() * local_i - n_t.real() * local_o;
     // |i.h||o.h| n_o^2 / (n_i i.h + n_o o.h)^2, where i.h and o.h have opposite signs; n_o^2 / (n_o/n_i).
     return common * local_i * local_o * n_i.real() * n_t.real() / (root * root) * facet;
+}
+
+// The sum over facets instead of directions: int D(h) G1(i) |i.h| / cos_i F G1(o) dh (Walter et al. 2007, eqs 18, 20).
+double Microfacets::reflectance(double cos_i) const {
+    static const math::Quadrature tilts = math::gauss_legendre(32, 0.0, 0.5 * pi),
+                                  turns = math::gauss_legendre(32, 0.0, pi);
+    const bool from_above = cos_i < 0.0;
+    const std::complex<double> n_i = from_above ? above_ : below_, n_t = from_above ? below_ : above_;
+    const double up = std::abs(cos_i), across = std::sqrt(std::max(0.0, 1.0 - up * up)), shadow = shadowing(cos_i) / up;
+    double sum = 0.0;
+    for (int r = 0; r < tilts.size(); ++r) {
+        // tan^2 of the facets' tilt by its cumulative distribution u = sin^2 t; so the long tail of GGX is smooth in t.
+        const double u = std::pow(std::sin(tilts.nodes[r]), 2),
+                     share = std::sin(2.0 * tilts.nodes[r]) * tilts.weights[r];
+        const double slope = surface_.distribution == FacetDistribution::ggx ? u / (1.0 - u) : -std::log1p(-u);
+        const double cos_h = 1.0 / std::sqrt(1.0 + surface_.alpha * surface_.alpha * slope);
+        const double sin_h = std::sqrt(std::max(0.0, 1.0 - cos_h * cos_h));
+        for (int t = 0; t < turns.size(); ++t) {
+            const double local = up * cos_h + across * sin_h * std::cos(turns.nodes[t]);
+            const double out = 2.0 * local * cos_h - up;
+            if (local <= 0.0 || out <= 0.0) continue;
+            const double fresnel = optics::fresnel_reflection(std::min(1.0, local), n_i, n_t)(0, 0);
+            sum += share * turns.weights[t] / pi * shadow * local / cos_h * fresnel * shadowing(out);
+        }
+    }
+    return sum;
 }
 
 }  // namespace patina::rt

@@ -22,6 +22,9 @@ class Microfacets {
     // are reciprocal. `only_mirrors` takes each facet for a perfect mirror.
     optics::Mueller operator()(double cos_i, double cos_o, double phi, bool only_mirrors = false) const;
 
+    // Share of the light from a direction that a single facet reflects and no other stops.
+    double reflectance(double cos_i) const;
+
   private:
     double density(double cos_h) const;
     double shadowing(double cosine) const;

@@ -31,6 +31,8 @@ double flux_error(const TransferSystem<double>& system, const LayerOperators<dou
     return worst;
 }
 
+constexpr double lost_in_rounding = 1e-14;
+
 GroupSolution solve_group(const StackMedia& media, const LayerMethod& method, int m, Components components) {
     const Problem& problem = media.problem;
     const int count = static_cast<int>(problem.layers.size());
@@ -38,7 +40,7 @@ GroupSolution solve_group(const StackMedia& media, const LayerMethod& method, in
     Eigen::MatrixXd below = media.base_reflection(m, components);
     for (int k = count - 1; k >= 0; --k) {
         const Layer& layer = problem.layers[k];
-        if (layer.optical_thickness > 0.0) {
+        if (layer.optical_thickness > 0.0 && (media.scatters(k, m) || below.size() > 0)) {
             // Over a black base the transmitted light is lost; it is asked for at m = 0 only, to check the energy
             // balance.
             LayerOperators<double> operators;
@@ -51,7 +53,9 @@ GroupSolution solve_group(const StackMedia& media, const LayerMethod& method, in
             }
             below = below.size() > 0 ? add_layer(operators, below).reflection : operators.reflection;
         }
-        if (media.tops[k]) below = media.add_interface_of(k, components, below).reflection;
+        // Orders that nothing scatters see the base through clear layers only.
+        if (m > 0 && below.size() > 0 && below.cwiseAbs().maxCoeff() < lost_in_rounding) below.resize(0, 0);
+        if (media.tops[k]) below = media.add_interface_of(k, m, components, below).reflection;
     }
     if (below.size() == 0)
         below = Eigen::MatrixXd::Zero(media.above.size() * components.count, media.above.size() * components.count);
@@ -98,7 +102,8 @@ void store_single(const SingleScattering& single, int m, const StackMedia& media
 Reflection solve_reflection(const Problem& problem, const SolveOptions& options, const LayerMethod& method) {
     validate(problem);
     const Truncation truncation = truncate(problem, options.streams);
-    const StackMedia media(truncation.scaled, quadrature_rays(problem, options.streams), options.streams);
+    const StackMedia media(truncation.scaled, quadrature_rays(problem, options.streams), options.streams,
+                           options.most_fourier_orders);
     const SingleScattering single(media, truncation, cut(media.problem, {}).slabs, options.scalar);
     const std::vector<int> order = ascending(media.above);
     Reflection result;

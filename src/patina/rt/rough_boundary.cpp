@@ -4,6 +4,7 @@
 
 #include "patina/core/constants.h"
 #include "patina/core/parallel.h"
+#include "patina/rt/balance.h"
 
 namespace patina::rt {
 
@@ -23,28 +24,6 @@ std::vector<Side> sides_of(const Medium& upper) {
     for (int i = 0; i < upper.size(); ++i)
         sides.push_back({-upper.mu[i], upper.mu[i], upper.scale[i], upper.index, upper.roles[i]});
     return sides;
-}
-
-// Factors c with c_j sum_o b_oj c_o = v_j^2 over the quadrature rays, b symmetric.
-Eigen::VectorXd balance(const Eigen::MatrixXd& b, const Eigen::VectorXd& flux, const std::vector<Side>& sides) {
-    constexpr int most_steps = 10000;
-    Eigen::VectorXd c = Eigen::VectorXd::Ones(b.rows()), weight = Eigen::VectorXd::Zero(b.rows());
-    for (Eigen::Index i = 0; i < b.rows(); ++i) weight[i] = sides[i].role == Role::quadrature ? 1.0 : 0.0;
-    const Eigen::VectorXd target = flux.cwiseAbs2();
-    for (int step = 0; step < most_steps; ++step) {
-        const Eigen::VectorXd next = target.cwiseQuotient(b * c.cwiseProduct(weight));
-        double change = 0.0;
-        for (Eigen::Index i = 0; i < c.size(); ++i) {
-            if (weight[i] > 0.0) change = std::max(change, std::abs(next[i] / c[i] - 1.0));
-            c[i] = weight[i] > 0.0 ? std::sqrt(c[i] * next[i]) : next[i];
-        }
-        if (change < 1e-15) break;
-    }
-    // View and beam rays by the final factors of the others.
-    const Eigen::VectorXd last = target.cwiseQuotient(b * c.cwiseProduct(weight));
-    for (Eigen::Index i = 0; i < c.size(); ++i)
-        if (weight[i] == 0.0) c[i] = last[i];
-    return c;
 }
 
 }  // namespace
@@ -104,10 +83,8 @@ RoughBoundary::RoughBoundary(const RoughSurface& surface, const Medium& upper, s
     Eigen::VectorXd flux(rays);
     for (Eigen::Index i = 0; i < rays; ++i) flux[i] = sides[i].scale * sides[i].index;
     const Eigen::MatrixXd balanced = flux.asDiagonal() * mirrors * flux.asDiagonal();
-    const Eigen::VectorXd c = balance(balanced, flux, sides);
-    for (Eigen::Index i = 0; i < rays; ++i)
-        if (std::abs(sides[i].cos_in) > 0.5 && sides[i].role == Role::quadrature)
-            correction_ = std::max(correction_, std::abs(c[i] * c[i] - 1.0));
+    const Eigen::VectorXd c = balance(balanced, flux.cwiseAbs2(), upper.roles);
+    correction_ = largest_correction(c, upper);
     for (Eigen::MatrixXd& mode : modes_)
         for (Eigen::Index i = 0; i < rays; ++i) {
             mode.middleRows<4>(4 * i) *= sides[i].role == Role::beam ? 0.0 : c[i];

@@ -51,7 +51,8 @@ RayPath::RayPath(const Problem& problem, const std::vector<Slab>& slabs, const R
     // Add slabs and interfaces from the base upwards.
     Mueller reflection = Mueller::Zero();
     const double lowest = problem.layers.back().refractive_index;
-    if (const double mu = ray.cosine_in(lowest); mu > 0.0) reflection = mask(smooth_mirror(problem.base, mu, lowest));
+    if (const double mu = ray.cosine_in(lowest); mu > 0.0)
+        reflection = Eigen::Vector4d(1, 1, -1, -1).asDiagonal() * mask(mirror_reflection(problem.base, mu, lowest));
     for (std::size_t p = count; p-- > 0;) {
         const int k = slabs[p].layer;
         const double n = problem.layers[k].refractive_index, mu = ray.cosine_in(n);
@@ -62,7 +63,9 @@ RayPath::RayPath(const Problem& problem, const std::vector<Slab>& slabs, const R
         const double above = !starts_layer ? n
                              : k > 0       ? problem.layers[k - 1].refractive_index
                                            : problem.refractive_index_above;
-        const RayInterface interface = interface_of_ray(ray, above, n);
+        // Through a rough top no light stays unscattered.
+        const RayInterface interface =
+            p == 0 && problem.has_rough_top() ? RayInterface{} : interface_of_ray(ray, above, n);
         tops_[p] = {mask(interface.reflection_below), mask(interface.transmission_down),
                     mask(interface.transmission_up)};
         reflection = mask(interface.reflection_above) + tops_[p].transmission_up * below_[p] * downward(p);

@@ -10,19 +10,22 @@
 #include "patina/rt/kernel.h"
 #include "patina/rt/nodes.h"
 #include "patina/rt/rough_boundary.h"
+#include "patina/rt/rough_interface.h"
 #include "patina/rt/solver.h"
+#include "patina/rt/surface_boundary.h"
 
 namespace patina::rt {
 
 struct StackMedia {
-    StackMedia(const Problem& problem, std::vector<Ray> rays, int streams);
+    // `most_orders`: Fourier orders that will be asked for; 0: all.
+    StackMedia(const Problem& problem, std::vector<Ray> rays, int streams, int most_orders = 0);
     StackMedia(const StackMedia&) = delete;
     StackMedia& operator=(const StackMedia&) = delete;
 
     // Reflection of the base; empty when black.
     Eigen::MatrixXd base_reflection(int m, Components components) const;
     // The interface on top of layer k over what reflects `below`; there must be one.
-    Added add_interface_of(int k, Components components, const Eigen::MatrixXd& below) const;
+    Added add_interface_of(int k, int m, Components components, const Eigen::MatrixXd& below) const;
     // A layer that scatters nothing at order m, in closed form.
     bool scatters(int k, int m) const {
         return m <= problem.layers[k].expansion.order() && problem.layers[k].single_scattering_albedo > 0.0;
@@ -35,7 +38,9 @@ struct StackMedia {
     std::vector<Medium> layers;                  // of each layer
     std::deque<LayerKernel> kernels;             // of each layer
     std::vector<std::optional<Interface>> tops;  // of each layer; nothing where the indices match
+    std::optional<RoughInterface> rough_top;
     std::optional<RoughBoundary> rough_base;
+    std::optional<SurfaceBoundary> surface_base;
     int order = 0;  // the highest Fourier order that scattering or a rough surface can excite
 };
 

@@ -67,6 +67,9 @@ void validate(const Problem& problem) {
         if (!(lambertian->reflectance >= 0.0 && lambertian->reflectance <= 1.0))
             throw bad(fmt::format("the base has reflectance {}", lambertian->reflectance),
                       "it is a fraction of the light", lambertian->reflectance > 1.0 ? "at most 1" : "at least 0");
+    validate_roughness(problem.top_roughness, "the top interface");
+    if (const auto* known = std::get_if<SurfaceBase>(&problem.base); known && !known->surface)
+        throw bad("the base has no surface", "", "give its reflection");
     if (const auto* metal = std::get_if<MetalBase>(&problem.base)) {
         const auto m = metal->refractive_index;
         validate_roughness(metal->roughness, "the base");

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <span>
 
-#include <fmt/format.h>
-
 #include "patina/coating/optical_problem.h"
 #include "patina/core/constants.h"
 #include "patina/jobs/validation/benchmark.h"
@@ -14,23 +12,10 @@ namespace patina::jobs::validation {
 
 namespace {
 
-// Volume fraction f and thickness d such that tau = d f <C_ext>/<V> = 1 with <C_ext> = 0.222813 um^2 and
-// <V> = (4/3) pi r0^3 exp(9/2 ln^2 sigma_g).
-rt::Problem paint_slab(bool interface) {
-    const double log_sigma = std::log(1.3), volume_fraction = 0.01;
-    const double mean_volume_um3 = 4.0 / 3.0 * pi * std::pow(0.125, 3) * std::exp(4.5 * log_sigma * log_sigma);
-    const std::string recipe = fmt::format(R"({}
-[[layers]]
-thickness_um = {:.12g}
-binder = {{ n = 1.495 }}
-[[layers.pigments]]
-material = {{ n = 2.75 }}
-volume_fraction = {}
-size = {{ distribution = "lognormal", median_radius_um = 0.125, sigma_g = 1.3 }}
-)",
-                                           interface ? "[interface]\ntype = \"smooth\"\n" : "",
-                                           mean_volume_um3 / (volume_fraction * 0.222813), volume_fraction);
-    return coating::optical_problem(coating::parse_recipe(recipe, "paint slab", "."), 550.0, 1e-6).problem;
+rt::Problem slab_problem(bool interface) {
+    return coating::optical_problem(coating::parse_recipe(paint_slab::recipe(interface), "paint slab", "."), 550.0,
+                                    1e-6)
+        .problem;
 }
 
 void run_slab(const rt::Solver* solver, bool interface, std::span<const paint_slab::Row> rows, Comparison& comparison) {
@@ -40,8 +25,8 @@ void run_slab(const rt::Solver* solver, bool interface, std::span<const paint_sl
             values.push_back({0.0, true, std::cos(radians(row.theta_o_deg)), row.phi_deg, s, row.stokes[s],
                               3.0 * row.sigma[s] + 1e-5 * row.stokes[0]});
     const double mu_i = std::cos(radians(45.0));
-    compare_field(*solver, paint_slab(interface), mu_i, 1.0 / (pi * mu_i), {.streams = 20, .samples = 300'000}, values,
-                  comparison);
+    compare_field(*solver, slab_problem(interface), mu_i, 1.0 / (pi * mu_i), {.streams = 20, .samples = 300'000},
+                  values, comparison);
 }
 
 }  // namespace
@@ -54,7 +39,7 @@ std::vector<Benchmark> paint_slab_benchmarks() {
             "polarized Monte Carlo from electric-field amplitudes, made for this project (docs/theory.md)",
             "Stokes BRDF of TiO2-like paint at 45 deg incidence, 25 directions, from a composition recipe",
             "3 of its standard errors and 1e-5 of I, what its 512 size classes leave",
-            {paint_slab(interface)},
+            {slab_problem(interface)},
             {}};
         benchmark.run = [interface](const rt::Solver* solver, Comparison& comparison) {
             if (interface)

@@ -4,7 +4,32 @@
 // 1, black base, unpolarized light at 45 deg. Value = exit Stokes radiance / irradiance on the slab, 1/sr, signs of
 // docs/conventions.md.
 
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "patina/core/constants.h"
+
 namespace patina::paint_slab {
+
+// The slab as a recipe: volume fraction f and thickness d such that tau = d f <C_ext>/<V> = 1 with <C_ext> = 0.222813
+// um^2 and <V> = (4/3) pi r0^3 exp(9/2 ln^2 sigma_g).
+inline std::string recipe(bool interface) {
+    const double log_sigma = std::log(1.3), volume_fraction = 0.01;
+    const double mean_volume_um3 = 4.0 / 3.0 * pi * std::pow(0.125, 3) * std::exp(4.5 * log_sigma * log_sigma);
+    return fmt::format(R"({}
+[[layers]]
+thickness_um = {:.12g}
+binder = {{ n = 1.495 }}
+[[layers.pigments]]
+material = {{ n = 2.75 }}
+volume_fraction = {}
+size = {{ distribution = "lognormal", median_radius_um = 0.125, sigma_g = 1.3 }}
+)",
+                       interface ? "[interface]\ntype = \"smooth\"\n" : "",
+                       mean_volume_um3 / (volume_fraction * 0.222813), volume_fraction);
+}
 
 struct Row {
     double theta_o_deg, phi_deg;

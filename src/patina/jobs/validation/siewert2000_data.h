@@ -4,6 +4,7 @@
 // 0.973527, black base, unpolarized beam of flux pi through a plane normal to it at cosine 0.6. The digits are those of
 // VLIDORT 2.8.3's validation of the paper's tables 2-9 (30 streams): allow one unit of the last digit. Signs are the
 // paper's: Q = I_par - I_perp, azimuth from the propagation direction of the beam.
+// The file is long because it is data: eight tables of 22 cosines at seven depths, kept together as the paper has them.
 
 #include <array>
 

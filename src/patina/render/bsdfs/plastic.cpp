@@ -23,6 +23,13 @@ double diffuse_internal_reflectance(double eta) {
 
 }  // namespace
 
+Spectrum diffuse_internal_reflectance(const Spectrum& interior_index, const Spectrum& exterior_index) {
+    return Spectrum([&](double nm) {
+        const Wavelengths w = Wavelengths::all_at(static_cast<float>(nm));
+        return diffuse_internal_reflectance(interior_index.at(w)[0] / exterior_index.at(w)[0]);
+    });
+}
+
 float PlasticLayer::specular_share(Float4 reflectance) const {
     const float surface = mean(reflectance) * specular_average, body = (1 - mean(reflectance)) * diffuse_average;
     return surface + body > 0 ? surface / (surface + body) : 0.0f;
@@ -116,10 +123,7 @@ PlasticLayer PlasticLayer::common(const Properties& node, const BsdfBuilder& bui
     p.specular_reflectance = Texture::reflectance(node, "specular_reflectance", 1.0f, *builder.resources);
     p.diffuse_average = p.diffuse_reflectance.average();
     p.specular_average = p.specular_reflectance.average();
-    p.returned_inside = Spectrum([&](double nm) {
-        const Wavelengths w = Wavelengths::all_at(static_cast<float>(nm));
-        return diffuse_internal_reflectance(p.interior_index.at(w)[0] / p.exterior_index.at(w)[0]);
-    });
+    p.returned_inside = diffuse_internal_reflectance(p.interior_index, p.exterior_index);
     return p;
 }
 

@@ -23,6 +23,9 @@
 
 namespace patina::render {
 
+// Share of diffuse light inside a body that its surface sends back, by wavelength.
+Spectrum diffuse_internal_reflectance(const Spectrum& interior_index, const Spectrum& exterior_index);
+
 struct PlasticLayer {
     Spectrum interior_index, exterior_index;
     Spectrum returned_inside;  // F
@@ -39,8 +42,10 @@ struct PlasticLayer {
   protected:
     static PlasticLayer common(const Properties& node, const BsdfBuilder& builder, const char* interior);
 
-  private:
+    // Probability of choosing the surface, whose reflectance this is.
     float specular_share(Float4 reflectance) const;
+
+  private:
     void add_body(const ShadingPoint& point, const Vec3& outgoing, const Vec3& incident, Float4 eta,
                   ScatteringMatrix& f) const;
     float add_facets(const ShadingPoint& point, const Vec3& outgoing, const Vec3& incident, Float4 eta,

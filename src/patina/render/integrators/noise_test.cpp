@@ -75,7 +75,9 @@ TEST(Noise, TargetStopsEveryIntegrator) {
         const StokesImage image = render(*scene, options);
         const double noise = std::stod(image.metadata.at("relative_noise"));
         EXPECT_LE(noise, 0.1) << integrator;
-        if (std::stoi(image.metadata.at("samples_per_pixel")) > 32) EXPECT_GT(noise, 0.07) << integrator;
+        if (std::stoi(image.metadata.at("samples_per_pixel")) > 32) {
+            EXPECT_GT(noise, 0.07) << integrator;
+        }
     }
 }
 

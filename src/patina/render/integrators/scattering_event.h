@@ -2,9 +2,11 @@
 // The kinds of scattering that light-path expressions tell apart (Heckbert 1990, and V for media).
 //
 //   S specular   every delta function: mirrors, smooth interfaces, polarization elements, the mirror part of a paint
-//   D diffuse    the rest of `diffuse`, `orennayar`, `plastic` and `paint` (a body: light that came out of the coating)
+//   D diffuse    the rest of `diffuse`, `dipole`, `orennayar`, `plastic` and `paint` (a body: light that came out of
+//   the
+//                coating)
 //   G glossy     the rest of every other model: a rough metal's lobe, a table, a lobe and a body that are not told
-//   apart
+//                apart
 //   V volume     scattering by the particles of a medium
 //
 // A model is one kind for all that is not a delta function; it may say which by a member
@@ -48,7 +50,8 @@ inline ScatteringEvent continuous_event(const Bsdf& bsdf, const ShadingPoint& po
             } else if constexpr (std::is_same_v<Model, Blend>) {
                 return event_of_mixture(model, point, outgoing);
             } else if constexpr (std::is_same_v<Model, Diffuse> || std::is_same_v<Model, OrenNayar> ||
-                                 std::is_same_v<Model, Plastic> || std::is_same_v<Model, Paint>) {
+                                 std::is_same_v<Model, Plastic> || std::is_same_v<Model, Paint> ||
+                                 std::is_same_v<Model, Dipole>) {
                 return ScatteringEvent::diffuse;
             } else {
                 return ScatteringEvent::glossy;

@@ -1,6 +1,7 @@
 #include "patina/render/integrators/volumetric.h"
 
 #include "patina/render/arriving_light.h"
+#include "patina/render/integrators/subsurface_probe.h"
 #include "patina/render/mueller_packet.h"
 #include "patina/render/scene.h"
 
@@ -9,7 +10,7 @@ namespace patina::render {
 namespace {
 
 // Random draws that belong to the camera, and that one step may take.
-constexpr std::uint32_t first_draw = 8, draws_per_step = 8;
+constexpr std::uint32_t first_draw = 8, draws_per_step = 12;
 
 // Paths in a medium that absorbs little have hundreds of events, each of which carries on nearly all of the light: an
 // end as likely as at surfaces would leave few of them with a large weight.
@@ -162,22 +163,52 @@ class VolumePath {
         const Vec3 outgoing = point_.frame.to_local(-ray_.direction);
         const ShadingPoint shading = shading_point();
         if (!bsdf_sample(bsdf(), shading, outgoing, lobe, sampler_.next2(), sample)) return false;
-        events_ = classes_.after(
-            events_, sample.delta ? ScatteringEvent::specular : continuous_event(bsdf(), shading, outgoing));
-        axes_to_world(sample.weight);
-        throughput_.append(sample.weight, -ray_.direction);
-        if (sample.dispersed && !hero_only_) {
-            hero_only_ = true;
-            throughput_.keep_only_hero();
+        follow(sample, sample.delta ? ScatteringEvent::specular : continuous_event(bsdf(), shading, outgoing));
+        return true;
+    }
+
+    // Translucent matter below the surface, or null.
+    const Dipole* translucent() const { return std::get_if<Dipole>(&bsdf().model); }
+
+    // Reflects the path, or takes it to where light enters the matter: gathers what a lamp sends there, and draws the
+    // next direction. False: the path ends.
+    bool scatter_in_matter(const Dipole& matter) {
+        const Vec3 outgoing = point_.frame.to_local(-ray_.direction);
+        if (outgoing.z() <= 0) return false;
+        const float lobe = sampler_.next(), body = matter.body_share(w_, outgoing);
+        if (lobe < 1 - body) {
+            BsdfSample sample;
+            if (!matter.sample(shading_point(), outgoing, lobe, Vec2::Zero(), sample)) return false;
+            follow(sample, ScatteringEvent::specular);
+            return true;
         }
-        eta_ *= sample.eta;
-        last_position_ = point_.position;
-        last_pdf_ = sample.pdf;
-        last_delta_ = sample.delta;
-        counts_passing_ = false;
-        const Vec3 direction = point_.frame.to_world(sample.incident).normalized();
-        medium_ = side_medium(direction);
-        ray_ = {point_.origin(direction), direction, INFINITY, ray_.time};
+
+        // Leave by refraction, from where the profile says.
+        ScatteringMatrix matrix;
+        matter.leave(w_, outgoing, matrix);
+        matrix.scale(splat(1 / body));
+        axes_to_world(matrix);
+        throughput_.append(matrix, -ray_.direction);
+        SubsurfaceEntry entry;
+        const float u_axis = sampler_.next(), u_hit = sampler_.next();
+        if (!sample_subsurface(scene_.geometry, matter.profile(w_), point_, shares(), u_axis, sampler_.next2(), u_hit,
+                               entry, ray_.time))
+            return false;
+        point_ = entry.point;
+        ray_.direction = -point_.geometric_normal;
+        matrix.set_depolarizing(entry.weight);
+        throughput_.append(matrix, -ray_.direction);
+        events_ = classes_.after(events_, ScatteringEvent::diffuse);
+
+        // Enter: from a lamp, and from anywhere.
+        add_direct_light_below(matter);
+        BsdfSample sample;
+        sample.incident = cosine_hemisphere(sampler_.next2());
+        if (!(sample.incident.z() > 0)) return false;
+        sample.pdf = sample.incident.z() * inv_pi_f;
+        matter.enter(w_, sample.incident, sample.weight);
+        sample.weight.scale(splat(1 / sample.pdf));
+        go_on(sample);
         return true;
     }
 
@@ -220,6 +251,47 @@ class VolumePath {
     }
     ShadingPoint shading_point() const { return {&w_, point_.uv, scene_.bsdfs.data()}; }
     void add(const StokesPacket& stokes, int events) { record_.add(stokes, classes_.path_class(events)); }
+
+    void follow(BsdfSample& sample, ScatteringEvent event) {
+        events_ = classes_.after(events_, event);
+        go_on(sample);
+    }
+    // From the surface point into the direction of a sample.
+    void go_on(BsdfSample& sample) {
+        axes_to_world(sample.weight);
+        throughput_.append(sample.weight, -ray_.direction);
+        if (sample.dispersed && !hero_only_) {
+            hero_only_ = true;
+            throughput_.keep_only_hero();
+        }
+        eta_ *= sample.eta;
+        last_position_ = point_.position;
+        last_pdf_ = sample.pdf;
+        last_delta_ = sample.delta;
+        counts_passing_ = false;
+        const Vec3 direction = point_.frame.to_world(sample.incident).normalized();
+        medium_ = side_medium(direction);
+        ray_ = {point_.origin(direction), direction, INFINITY, ray_.time};
+    }
+
+    // Light of a lamp that enters translucent matter at the point.
+    void add_direct_light_below(const Dipole& matter) {
+        if (!scene_.lights.any_sampled()) return;
+        LightSample light;
+        const float choice = sampler_.next();
+        if (!scene_.lights.sample(scene_.geometry, point_.position, w_, choice, sampler_.next2(), light)) return;
+        const Vec3 incident = point_.frame.to_local(light.direction);
+        if (incident.z() <= 0) return;
+        const Float4 passed = transmittance(light, point_.origin(light.direction), medium_);
+        if (largest(passed) <= 0) return;
+        const float share = light.delta ? 1.0f : power_heuristic(light.pdf, incident.z() * inv_pi_f);
+        ScatteringMatrix matrix;
+        matter.enter(w_, incident, matrix);
+        axes_to_world(matrix);
+        add(arriving(throughput_, scene_.lights, light.emitter, passed * light.radiance * (share / light.pdf),
+                     -light.direction, matrix, -light.direction),
+            events_);
+    }
 
     // Each wavelength's share of what the path carries.
     Float4 shares() const {
@@ -324,6 +396,8 @@ void VolumetricIntegrator::trace(const TransportProblem& problem, const Sensor::
         if (particle) {
             path.add_direct_light_at_particle();
             path.scatter_at_particle();
+        } else if (const Dipole* matter = path.translucent()) {
+            if (!path.scatter_in_matter(*matter)) break;
         } else {
             path.add_direct_light_at_surface();
             if (!path.scatter_at_surface()) break;

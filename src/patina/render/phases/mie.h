@@ -11,6 +11,7 @@
 
 namespace patina::render {
 
+// Any tabulated matrix: of Mie spheres by the plugin `mie`, of a recipe's layer by the medium `paint`.
 struct MiePhase {
     std::shared_ptr<const PhaseTable> table;
 

@@ -4,7 +4,7 @@
 
 namespace patina::rt::monte_carlo {
 
-Cone::Cone(const Stack& stack, const SpecularStack::Level& level, double cosine) : level_(level) {
+Cone::Cone(const Stack& stack, const SpecularStack::Level& level, double cosine) : level_(level), cosine_(cosine) {
     PATINA_EXPECT(cosine > 0.0 && cosine <= 1.0);
     const SpecularStack specular(stack, stack.index(level.layer) * std::sqrt((1.0 - cosine) * (1.0 + cosine)));
     const SpecularStack::Importance importance = specular.importance(level);

@@ -31,6 +31,14 @@ class Cone {
         return total;
     }
 
+    // Gain of radiance that leaves a rough top downward into layer 0, or upward out of the stack, and its cosine there
+    // (0 when it is not detected).
+    double mu_at_top(bool up) const { return !up ? mu(0) : level_.layer < 0 ? cosine_ : 0.0; }
+    Gain gain_from_top(bool up) const {
+        if (up) return {1.0, 1.0, 1.0};
+        return gain(0, std::nextafter(0.0, -1.0), false);
+    }
+
     // Radiance from a Lambertian base at the bottom of the last layer.
     Gain gain_from_base() const {
         const int last = static_cast<int>(layers_.size()) - 1;
@@ -45,6 +53,7 @@ class Cone {
         Gain up_at_top, down_at_bottom;
     };
     SpecularStack::Level level_;
+    double cosine_;
     std::vector<LayerView> layers_;
 };
 

@@ -40,6 +40,8 @@ Stack make_stack(const Problem& problem, bool scalar, double deepest_level) {
         above += thickness;
         stack.layers.push_back({thickness, w, layer.refractive_index, ScatteringTable(layer.expansion, scalar)});
     }
+    if (problem.has_rough_top())
+        stack.rough_top.emplace(*problem.top_roughness, stack.index_above, stack.index(0), scalar);
     return stack;
 }
 
@@ -56,7 +58,7 @@ SpecularStack::SpecularStack(const Stack& stack, double snell_invariant) : stack
 
     // Amplitudes of every interface, from both sides; none where the wave does not propagate.
     faces_.resize(static_cast<std::size_t>(count) + 1);
-    for (int j = 0; j < count; ++j) {
+    for (int j = stack.rough_top ? 1 : 0; j < count; ++j) {  // no light passes a rough top unscattered
         Face& face = faces_[static_cast<std::size_t>(j)];
         const double mu_above = j == 0 ? cosine(-1) : mu(j - 1), mu_below = mu(j);
         if (mu_above > 0.0) {

@@ -1,9 +1,11 @@
 #pragma once
 // The stack as the random walk sees it, and what happens in it to light that does not scatter.
 
+#include <optional>
 #include <vector>
 
 #include "patina/rt/monte_carlo/interface.h"
+#include "patina/rt/monte_carlo/rough_top.h"
 #include "patina/rt/monte_carlo/scattering_table.h"
 #include "patina/rt/problem.h"
 
@@ -21,6 +23,7 @@ struct Stack {
     std::vector<StackLayer> layers;
     Base base;
     bool scalar;
+    std::optional<RoughTop> rough_top = std::nullopt;
 
     int size() const { return static_cast<int>(layers.size()); }
     // Of the medium above (layer = -1) or of a layer.

@@ -29,10 +29,16 @@ struct Packet {
 };
 
 // Where the unscattered beam first scatters, drawn in proportion to the intensity that does so there.
+inline constexpr int top_surface = -2;
+
 template <int columns>
 class FirstCollision {
   public:
     FirstCollision(const Stack& stack, double mu_i, const StokesColumns<columns>& incident) : stack_(stack) {
+        if (stack.rough_top) {
+            add({top_surface, false, mu_i, 1.0, 1.0, incident}, Gain{1.0, 1.0, 1.0});
+            return;
+        }
         const SpecularStack specular(stack, stack.index_above * std::sqrt((1.0 - mu_i) * (1.0 + mu_i)));
         const SpecularStack::Beam beam = specular.beam();
         for (int l = 0; l < stack.size(); ++l)
@@ -50,7 +56,8 @@ class FirstCollision {
     // Of an incident flux of I = 1 (first column), the part that scatters at all.
     double power() const { return cumulative_.empty() ? 0.0 : cumulative_.back(); }
 
-    // `xi` in (0, 1), which may be stratified, chooses both place and depth. layer = -1 stands for the Lambertian base.
+    // `xi` in (0, 1), which may be stratified, chooses both place and depth. layer = -1 stands for the Lambertian base,
+    // top_surface for the rough top.
     Packet<columns> draw(double xi) const {
         double target = xi * power();
         std::size_t c = 0;
@@ -105,7 +112,10 @@ class Walk {
     void run(const Packet<columns>& packet, double start_weight) {
         packet_ = packet;
         start_weight_ = start_weight;
-        bool alive = packet.layer >= 0 ? collide() : leave_lambertian();
+        bool alive = true;
+        if (packet.layer >= 0) alive = collide();
+        if (packet.layer == -1) alive = leave_lambertian();
+        if (packet.layer == top_surface) alive = meet_rough_top();
         while (alive) alive = fly() && collide();
     }
 
@@ -223,6 +233,7 @@ class Walk {
         const double mu = std::abs(packet_.frame.k.z()), n = stack_.index(packet_.layer);
         const double cycle = 2.0 * layer().thickness / mu;
         const bool at_metal = packet_.layer + 1 == stack_.size();
+        if (packet_.layer == 0 && stack_.rough_top) return true;
         if (!(path > 4.0 * cycle) || (at_metal && !stack_.has_metal())) return true;
         const InterfaceGains top = stack_.interface(mu, n, stack_.index(packet_.layer - 1));
         if (top.cos_t > 0.0) return true;
@@ -245,6 +256,7 @@ class Walk {
     // leaves.
     bool cross(bool up) {
         const int next = packet_.layer + (up ? -1 : 1);
+        if (next < 0 && stack_.rough_top) return meet_rough_top();
         const double n1 = stack_.index(packet_.layer), n2 = stack_.index(next);
         if (n1 != n2) {
             turn_to_meridian();
@@ -267,6 +279,29 @@ class Walk {
         packet_.layer = next;
         packet_.tau = up ? layer().thickness : 0.0;
         return true;
+    }
+
+    // At a rough top, from either side: sends to the detectors, then goes on into the first layer; false when it
+    // leaves.
+    bool meet_rough_top() {
+        const RoughTop& top = *stack_.rough_top;
+        for (std::size_t c = 0; c < cones_.size(); ++c)
+            for (bool up : {true, false}) {
+                const double mu = cones_[c].mu_at_top(up);
+                if (mu == 0.0) continue;
+                const Gain gain = cones_[c].gain_from_top(up);
+                if (gain.is_zero()) continue;
+                const double sine = std::sqrt((1.0 - mu) * (1.0 + mu)), cosine = up ? mu : -mu;
+                sink_.each(c, packet_.weight * gain, [&](double cos_azimuth, double sin_azimuth) {
+                    return top.template radiance<columns>(packet_.frame, packet_.stokes,
+                                                          {sine * cos_azimuth, sine * sin_azimuth, cosine});
+                });
+            }
+        packet_.weight *= top.template draw<columns>(packet_.frame, packet_.stokes, random_);
+        if (packet_.weight == 0.0 || packet_.frame.k.z() >= 0.0) return false;
+        packet_.layer = 0;
+        packet_.tau = 0.0;
+        return normalize(1.0) && survives();
     }
 
     bool meet_base() {

@@ -149,7 +149,8 @@ class MonteCarloSolver final : public Solver {
     bool is_statistical() const override { return true; }
     std::string unsupported(const Problem& problem) const override {
         const auto* metal = std::get_if<MetalBase>(&problem.base);
-        return metal && metal->roughness ? "it has smooth interfaces and mirrors only" : "";
+        if (std::holds_alternative<SurfaceBase>(problem.base)) return "it cannot draw directions from a table";
+        return metal && metal->roughness ? "it has smooth mirrors only" : "";
     }
     Reflection reflection(const Problem& problem, const SolveOptions& options) const override;
     Field field(const Problem& problem, const FieldRequest& request, const SolveOptions& options) const override;
@@ -214,9 +215,11 @@ Reflection MonteCarloSolver::reflection(const Problem& problem, const SolveOptio
     std::vector<Cone> cones;
     for (double mu : rule.nodes) cones.emplace_back(stack, SpecularStack::Level{-1, 0.0, true}, mu);
 
-    // A phase matrix of order L has no modes beyond m = L, nor has any number of scatterings.
+    // The lobes of a rough top are about alpha wide. A phase matrix of order L has no modes beyond m = L, nor has any
+    // number of scatterings.
     int orders = 1;
     for (const Layer& layer : problem.layers) orders = std::max(orders, layer.expansion.order() + 1);
+    if (stack.rough_top) orders = std::max(orders, static_cast<int>(std::ceil(8.0 / problem.top_roughness->alpha)) + 1);
     Reflection reflection{rule.nodes, rule.weights, {}, {}};
     reflection.modes.assign(static_cast<std::size_t>(orders), Eigen::MatrixXd::Zero(4 * count, 4 * count));
 
