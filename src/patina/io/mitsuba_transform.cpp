@@ -116,7 +116,7 @@ Eigen::Matrix4d read_operation(const Element& element) {
 }  // namespace
 
 Eigen::Matrix4d read_transform(const Element& element) {
-    element.expect_attributes({"name"});
+    element.expect_attributes({"name", "time"});
     Eigen::Matrix4d transform = Eigen::Matrix4d::Identity();
     for (const Element& operation : element.children()) {
         const Eigen::Matrix4d step = read_operation(operation);
@@ -128,6 +128,29 @@ Eigen::Matrix4d read_transform(const Element& element) {
             throw input_error(operation.where(), "the transform overflows", "its numbers are too large");
     }
     return transform;
+}
+
+std::shared_ptr<Properties> read_animation(const Element& element) {
+    element.expect_attributes({"name"});
+    auto animation = std::make_shared<Properties>();
+    animation->category = "animation";
+    animation->type = "transform";
+    animation->where = element.where();
+    double before = -INFINITY;
+    for (const Element& key : element.children()) {
+        if (key.tag() != "transform")
+            throw input_error(key.where(), fmt::format("<animation> takes no {}", in_quotes("<" + key.tag() + ">")), "",
+                              "write <transform time=\"0\">");
+        const LocatedText time = key.text("time");
+        const double time_s = parse_float(time.text, time.where, "time");
+        if (!(time_s > before)) throw input_error(time.where, "the times of an animation must ascend");
+        before = time_s;
+        const std::string number = std::to_string(animation->entries.size() / 2);
+        animation->entries.push_back({"time_" + number, time_s, time.where});
+        animation->entries.push_back({"transform_" + number, read_transform(key), key.where()});
+    }
+    if (animation->entries.empty()) throw input_error(element.where(), "an animation needs transforms");
+    return animation;
 }
 
 }  // namespace patina::io

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,10 @@ std::optional<PropertyValue> read_property(const Element& element, const FileRes
 
 // translate, rotate, scale, lookat and matrix, each applied after the ones above it (multiplied from the left).
 Eigen::Matrix4d read_transform(const Element& element);
+
+// <animation name="to_world"> with <transform time="..."> inside, at ascending times in seconds, as a node of category
+// "animation": entries "time_0", "transform_0", "time_1", ...
+std::shared_ptr<Properties> read_animation(const Element& element);
 
 // <rgb>, <color>: linear sRGB, or "#rrggbb" in encoded sRGB, which is made linear.
 SpectrumSpec read_rgb(const Element& element);

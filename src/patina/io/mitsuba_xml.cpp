@@ -108,12 +108,22 @@ void SceneReader::read_children(const Element& parent, Properties& node, int dep
 void SceneReader::read_child(const Element& child, Properties& node, int depth) {
     if (read_directive(child, node)) return;
     const FileResolver resolve = [this](const LocatedText& name) { return expect_file(name); };
+    if (child.tag() == "animation") {
+        const std::string name = child.name("name");
+        if (node.has(name) || node.children.size() >= most_properties)
+            throw input_error(child.where(), fmt::format("property {} is given twice", in_quotes(name)));
+        node.children.push_back({name, read_animation(child)});
+        return;
+    }
+    if (child.tag() == "transform" && child.has("time"))
+        throw input_error(child.where(), "only the transforms of an <animation> have a time");
     if (auto value = read_property(child, resolve)) return read_entry(child, std::move(*value), node);
     if (contains(plugin_tags(), child.tag())) return read_plugin(child, node, depth);
 
     std::vector<std::string> known = property_tags();
     known.insert(known.end(), plugin_tags().begin(), plugin_tags().end());
-    for (const char* directive : {"default", "include", "ref", "alias", "path"}) known.emplace_back(directive);
+    for (const char* directive : {"default", "include", "ref", "alias", "path", "animation"})
+        known.emplace_back(directive);
     throw input_error(child.where(), fmt::format("unknown element {}", in_quotes("<" + child.tag() + ">")), "",
                       did_you_mean(child.tag(), known));
 }

@@ -12,7 +12,9 @@
 //   A `material` becomes a path only when such a file exists, for it may also be the name of a built-in material.
 // - <spectrum filename="x.spd"> is read here and becomes a sampled spectrum.
 //
-// Not supported, and refused by name: Mitsuba 0.x files (camelCase, version 0.6), animated transforms.
+// - An <animation> of transforms becomes a child of category "animation" (mitsuba_values.h).
+//
+// Not supported, and refused by name: Mitsuba 0.x files (camelCase, version 0.6).
 
 #include <filesystem>
 #include <map>

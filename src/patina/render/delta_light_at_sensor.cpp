@@ -16,7 +16,8 @@ StokesPacket on_surface(const Scene& scene, const Sensor& sensor, const Sensor::
             !scene.lights.sample_emitter(emitter, scene.geometry, camera.ray.origin, w, Vec2::Zero(), light))
             continue;
         const float cos = light.direction.dot(camera.normal);
-        if (cos <= 0 || scene.geometry.occluded({camera.ray.origin, light.direction, light.distance * (1 - 1e-4f)}))
+        if (cos <= 0 || scene.geometry.occluded(
+                            {camera.ray.origin, light.direction, light.distance * (1 - 1e-4f), camera.ray.time}))
             continue;
         const Throughput ray(Frame(light.direction, sensor.rotation.col(0)).s);
         sum += arriving(ray, scene.lights, emitter, light.radiance * (cos * inv_pi_f), -light.direction);
@@ -29,7 +30,7 @@ StokesPacket far_away(const Scene& scene, const Sensor::CameraRay& camera, const
     StokesPacket sum{};
     const Vec3 towards = -camera.ray.direction;
     const auto add = [&](int emitter, const Vec3& position, Float4 intensity) {
-        if (largest(intensity) <= 0 || scene.geometry.occluded({position, towards, INFINITY})) return;
+        if (largest(intensity) <= 0 || scene.geometry.occluded({position, towards, INFINITY, camera.ray.time})) return;
         const float share = inv_pi_f / sqr(scene.geometry.radius());
         sum += arriving(Throughput(camera.stokes_axis), scene.lights, emitter, intensity * share, towards);
     };

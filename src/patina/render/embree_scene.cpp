@@ -28,8 +28,11 @@ void bounds_of_analytic(const RTCBoundsFunctionArguments* args) {
     *args->bounds_o = {low.x(), low.y(), low.z(), 0, high.x(), high.y(), high.z(), 0};
 }
 
-Ray ray_of(const RTCRay& r) {
-    return {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tfar};
+// Inside an instance the ray is transformed, its direction not of unit length: distances grow by `scale`.
+Ray unit_ray_of(const RTCRay& r, float& scale) {
+    const Vec3 direction(r.dir_x, r.dir_y, r.dir_z);
+    scale = direction.norm();
+    return {{r.org_x, r.org_y, r.org_z}, direction / scale, r.tfar * scale};
 }
 
 void intersect_analytic(const RTCIntersectFunctionNArguments* args) {
@@ -37,20 +40,27 @@ void intersect_analytic(const RTCIntersectFunctionNArguments* args) {
     auto* ray_hit = reinterpret_cast<RTCRayHit*>(args->rayhit);  // one ray at a time is all we send
     const AnalyticShape& s = (*static_cast<const Shapes*>(args->geometryUserPtr))[args->primID];
     Hit& hit = reinterpret_cast<Context*>(args->context)->analytic_hit;
-    hit.t = ray_hit->ray.tfar;
-    if (!s.intersect(ray_of(ray_hit->ray), static_cast<int>(args->primID), hit)) return;
-    ray_hit->ray.tfar = hit.t;
+    float scale = 1;
+    const Ray ray = unit_ray_of(ray_hit->ray, scale);
+    Hit found;
+    found.t = ray.t_max;
+    if (!s.intersect(ray, static_cast<int>(args->primID), found)) return;
+    hit = found;
+    ray_hit->ray.tfar = found.t / scale;
     ray_hit->hit.geomID = args->geomID;
     ray_hit->hit.primID = args->primID;
+    ray_hit->hit.instID[0] = args->context->instID[0];
 }
 
 void occluded_analytic(const RTCOccludedFunctionNArguments* args) {
     if (!args->valid[0]) return;
     auto* ray = reinterpret_cast<RTCRay*>(args->ray);
     const AnalyticShape& s = (*static_cast<const Shapes*>(args->geometryUserPtr))[args->primID];
+    float scale = 1;
+    const Ray unit = unit_ray_of(*ray, scale);
     Hit hit;
-    hit.t = ray->tfar;
-    if (s.intersect(ray_of(*ray), 0, hit)) ray->tfar = -INFINITY;
+    hit.t = unit.t_max;
+    if (s.intersect(unit, 0, hit)) ray->tfar = -INFINITY;
 }
 
 template <class T>
@@ -65,65 +75,97 @@ void set_ray(RTCRay& out, const Ray& ray) {
     out.dir_x = ray.direction.x(), out.dir_y = ray.direction.y(), out.dir_z = ray.direction.z();
     out.tnear = 0;
     out.tfar = ray.t_max;
-    out.time = 0;
+    out.time = ray.time;
     out.mask = 0xffffffffu;
     out.id = 0;
     out.flags = 0;
 }
 
+// One of Embree's scenes: the world, or a group of shapes in its own space.
+struct Part {
+    RTCScene scene = nullptr;
+    Shapes analytic;
+    unsigned analytic_id = RTC_INVALID_GEOMETRY_ID;
+    std::vector<int> of_geometry;  // by Embree's number: the shape, or the instance
+
+    void attach(RTCGeometry geometry, int index) {
+        rtcCommitGeometry(geometry);
+        const unsigned id = rtcAttachGeometry(scene, geometry);
+        rtcReleaseGeometry(geometry);
+        of_geometry.resize(std::max<std::size_t>(of_geometry.size(), id + 1), -1);
+        of_geometry[id] = index;
+        if (index < 0) analytic_id = id;
+    }
+};
+
 }  // namespace
 
 struct EmbreeScene::State {
     RTCDevice device = nullptr;
-    RTCScene scene = nullptr;
-    Shapes analytic;
-    unsigned analytic_id = RTC_INVALID_GEOMETRY_ID;
-    std::vector<int> shape_of_geometry;
+    const Geometry* geometry = nullptr;
+    std::vector<Part> parts;  // [0] the world, [1 + group]
 
     ~State() {
-        if (scene) rtcReleaseScene(scene);
+        for (const Part& part : parts)
+            if (part.scene) rtcReleaseScene(part.scene);
         if (device) rtcReleaseDevice(device);
     }
-    void attach(RTCGeometry geometry, int shape) {
-        rtcCommitGeometry(geometry);
-        const unsigned id = rtcAttachGeometry(scene, geometry);
-        rtcReleaseGeometry(geometry);
-        shape_of_geometry.resize(std::max<std::size_t>(shape_of_geometry.size(), id + 1), -1);
-        shape_of_geometry[id] = shape;
-        if (shape < 0) analytic_id = id;
+    // Meshes and analytic shapes of the world (group -1) or of a group.
+    void fill(Part& part, int group) {
+        part.scene = rtcNewScene(device);
+        rtcSetSceneFlags(part.scene, RTC_SCENE_FLAG_ROBUST);
+        rtcSetSceneBuildQuality(part.scene, RTC_BUILD_QUALITY_HIGH);
+        for (const MeshShape& m : geometry->meshes) {
+            if (m.group != group) continue;
+            RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+            fill_buffer(mesh, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, m.mesh->positions.data(),
+                        m.mesh->positions.size());
+            fill_buffer(mesh, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, m.mesh->triangles.data(),
+                        m.mesh->triangles.size());
+            part.attach(mesh, m.shape);
+        }
+        if (part.analytic.empty()) return;
+        RTCGeometry shapes = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+        rtcSetGeometryUserPrimitiveCount(shapes, static_cast<unsigned>(part.analytic.size()));
+        rtcSetGeometryUserData(shapes, &part.analytic);
+        rtcSetGeometryBoundsFunction(
+            shapes, [](const RTCBoundsFunctionArguments* args) { bounds_of_analytic(args); }, nullptr);
+        rtcSetGeometryIntersectFunction(shapes, intersect_analytic);
+        rtcSetGeometryOccludedFunction(shapes, occluded_analytic);
+        part.attach(shapes, -1);
+    }
+    void attach_instance(int index) {
+        const Instance& instance = geometry->instances[index];
+        RTCGeometry copy = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+        rtcSetGeometryInstancedScene(copy, parts[1 + instance.group].scene);
+        rtcSetGeometryTimeStepCount(copy, static_cast<unsigned>(instance.to_world.size()));
+        for (unsigned step = 0; step < instance.to_world.size(); ++step)
+            rtcSetGeometryTransform(copy, step, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, instance.to_world[step].data());
+        parts[0].attach(copy, index);
     }
 };
 
-EmbreeScene::EmbreeScene(const std::vector<MeshShape>& meshes, std::span<const AnalyticShape> analytic)
+EmbreeScene::EmbreeScene(const Geometry& geometry, std::span<const AnalyticShape> analytic)
     : state_(std::make_unique<State>()) {
-    state_->analytic = analytic;
+    state_->geometry = &geometry;
     state_->device = rtcNewDevice(nullptr);
     if (!state_->device)
         throw Error(ErrorKind::runtime,
                     fmt::format("Embree does not start (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
-    state_->scene = rtcNewScene(state_->device);
-    rtcSetSceneFlags(state_->scene, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(state_->scene, RTC_BUILD_QUALITY_HIGH);
 
-    for (const MeshShape& m : meshes) {
-        RTCGeometry geometry = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, m.mesh->positions.data(),
-                    m.mesh->positions.size());
-        fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, m.mesh->triangles.data(),
-                    m.mesh->triangles.size());
-        state_->attach(geometry, m.shape);
+    // Groups before their copies. Embree keeps pointers to the parts: all of them are made first.
+    state_->parts.resize(1 + geometry.groups.size());
+    state_->parts[0].analytic = analytic;
+    for (int group = -1; group < static_cast<int>(geometry.groups.size()); ++group) {
+        Part& part = state_->parts[1 + group];
+        if (group >= 0)
+            part.analytic =
+                Shapes(geometry.group_analytic).subspan(geometry.groups[group].first, geometry.groups[group].count);
+        state_->fill(part, group);
+        if (group >= 0) rtcCommitScene(part.scene);
     }
-    if (!analytic.empty()) {
-        RTCGeometry geometry = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_USER);
-        rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(analytic.size()));
-        rtcSetGeometryUserData(geometry, &state_->analytic);
-        rtcSetGeometryBoundsFunction(
-            geometry, [](const RTCBoundsFunctionArguments* args) { bounds_of_analytic(args); }, nullptr);
-        rtcSetGeometryIntersectFunction(geometry, intersect_analytic);
-        rtcSetGeometryOccludedFunction(geometry, occluded_analytic);
-        state_->attach(geometry, -1);
-    }
-    rtcCommitScene(state_->scene);
+    for (int i = 0; i < static_cast<int>(geometry.instances.size()); ++i) state_->attach_instance(i);
+    rtcCommitScene(state_->parts[0].scene);
     if (const RTCError error = rtcGetDeviceError(state_->device); error != RTC_ERROR_NONE)
         throw Error(ErrorKind::runtime,
                     fmt::format("Embree cannot build the scene (error {})", static_cast<int>(error)));
@@ -133,24 +175,31 @@ EmbreeScene::~EmbreeScene() = default;
 
 bool EmbreeScene::intersect(const Ray& ray, Hit& hit) const {
     RTCRayHit query;
-    set_ray(query.ray, {ray.origin, ray.direction, hit.t});
+    set_ray(query.ray, {ray.origin, ray.direction, hit.t, ray.time});
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     Context context;
     rtcInitIntersectContext(&context.embree);
-    rtcIntersect1(state_->scene, &context.embree, &query);
+    rtcIntersect1(state_->parts[0].scene, &context.embree, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    if (query.hit.geomID == state_->analytic_id) {
+    int instance = -1, first = 0;
+    const Part* part = &state_->parts[0];
+    if (query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID) {
+        instance = part->of_geometry[query.hit.instID[0]];
+        const int group = state_->geometry->instances[instance].group;
+        first = state_->geometry->groups[group].first;
+        part = &state_->parts[1 + group];
+    }
+    if (query.hit.geomID == part->analytic_id) {
         hit = context.analytic_hit;
         hit.t = query.ray.tfar;
-        return true;
+        hit.primitive += first;
+    } else {
+        hit = {
+            query.ray.tfar, part->of_geometry[query.hit.geomID], static_cast<int>(query.hit.primID), true, query.hit.u,
+            query.hit.v};
     }
-    hit = {query.ray.tfar,
-           state_->shape_of_geometry[query.hit.geomID],
-           static_cast<int>(query.hit.primID),
-           true,
-           query.hit.u,
-           query.hit.v};
+    hit.instance = instance;
     return true;
 }
 
@@ -159,7 +208,7 @@ bool EmbreeScene::occluded(const Ray& ray) const {
     set_ray(query, ray);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcOccluded1(state_->scene, &context, &query);
+    rtcOccluded1(state_->parts[0].scene, &context, &query);
     return query.tfar < 0;
 }
 

@@ -9,12 +9,13 @@
 
 namespace patina::render {
 
-struct MeshShape;
+class Geometry;
 
 class EmbreeScene {
   public:
-    // Meshes and, when given, analytic shapes as user geometry. Both must outlive this object, unmoved.
-    EmbreeScene(const std::vector<MeshShape>& meshes, std::span<const AnalyticShape> analytic);
+    // The geometry's meshes and instances and, when given, analytic shapes as user geometry. Its arrays must outlive
+    // this object, unmoved.
+    EmbreeScene(const Geometry& geometry, std::span<const AnalyticShape> analytic);
     ~EmbreeScene();
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;

@@ -21,6 +21,12 @@ Vec3 unit(const Eigen::Vector3d& v, const SourceLocation& where) {
     return v.normalized().cast<float>();
 }
 
+Vec3 place(const Eigen::Vector3d& p, const SourceLocation& where) {
+    if (!(p.cwiseAbs().maxCoeff() < 1e12))
+        throw input_error(where, "the light stands too far away", "", "keep coordinates below 1e12");
+    return p.cast<float>();
+}
+
 Eigen::Matrix3f rotation_of(const Properties& node) {
     const Eigen::Matrix3d m = node.transform("to_world").block<3, 3>(0, 0);
     const double scale = std::cbrt(std::abs(m.determinant()));
@@ -83,7 +89,7 @@ EnvironmentEmitter environment(const Properties& node, const SceneResources& res
 SpotEmitter spot(const Properties& node) {
     SpotEmitter e;
     const Eigen::Matrix4d m = node.transform("to_world");
-    e.position = m.block<3, 1>(0, 3).cast<float>();
+    e.position = place(m.block<3, 1>(0, 3), node.location_of("to_world"));
     e.axis = unit(m.block<3, 1>(0, 2), node.location_of("to_world"));
     e.intensity = emission(node, "intensity");
     const double cutoff_deg = node.number("cutoff_angle", 20.0),
@@ -116,7 +122,8 @@ Emitter build_emitter(const Properties& node, const SceneResources& resources) {
     if (node.type == "point") {
         const Eigen::Vector4d p =
             node.transform("to_world") * node.vector("position", Eigen::Vector3d::Zero()).homogeneous();
-        emitter = PointEmitter{p.head<3>().cast<float>(), emission(node, "intensity")};
+        emitter = PointEmitter{place(p.head<3>(), node.location_of(node.has("position") ? "position" : "to_world")),
+                               emission(node, "intensity")};
     } else if (node.type == "directional") {
         const Eigen::Matrix4d m = node.transform("to_world");
         const Eigen::Vector3d direction = m.block<3, 3>(0, 0) * node.vector("direction", Eigen::Vector3d::UnitZ());

@@ -90,8 +90,11 @@ FilmSettings build_film(const Properties& node) {
     };
     film.width = positive("width", 768);
     film.height = positive("height", 576);
-    film.crop_x = static_cast<int>(node.integer("crop_offset_x", 0));
-    film.crop_y = static_cast<int>(node.integer("crop_offset_y", 0));
+    const auto offset = [&](const char* name) {
+        return static_cast<int>(std::clamp<std::int64_t>(node.integer(name, 0), -1, 65536));
+    };
+    film.crop_x = offset("crop_offset_x");
+    film.crop_y = offset("crop_offset_y");
     film.crop_width = positive("crop_width", film.width);
     film.crop_height = positive("crop_height", film.height);
     if (film.crop_x < 0 || film.crop_y < 0 || film.crop_x + film.crop_width > film.width ||

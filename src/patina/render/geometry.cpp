@@ -24,19 +24,28 @@ void grow(Eigen::AlignedBox3f& box, const AnalyticShape& s) {
 
 void Geometry::commit() {
     Eigen::AlignedBox3f box;
+    for (ShapeGroup& group : groups)
+        for (int i = group.first; i < group.first + group.count; ++i) {
+            grow(group.box, group_analytic[i]);
+            group_analytic[i].set_frame();
+        }
     for (AnalyticShape& s : analytic) {
         grow(box, s);
-        if (s.kind != AnalyticShape::Kind::sphere) s.frame = Frame(s.flipped ? Vec3(-s.n) : s.n, s.a);
+        s.set_frame();
     }
     for (const MeshShape& m : meshes)
-        for (const Vec3& p : m.mesh->positions) box.extend(p);
+        for (const Vec3& p : m.mesh->positions) (m.group < 0 ? box : groups[m.group].box).extend(p);
+    for (const Instance& instance : instances) {
+        box.extend(instance.bounds(groups[instance.group].box));
+        moves_ |= instance.to_world.size() > 1;
+    }
     if (!box.isEmpty()) {
         centre_ = box.center();
         radius_ = std::max(0.5f * box.diagonal().norm(), 1e-6f);
     }
     brute_force_ = analytic.size() <= most_tested_one_by_one;
-    if (!meshes.empty() || !brute_force_)
-        embree_ = std::make_unique<EmbreeScene>(meshes, brute_force_ ? std::span<const AnalyticShape>{} : analytic);
+    if (!meshes.empty() || !instances.empty() || !brute_force_)
+        embree_ = std::make_unique<EmbreeScene>(*this, brute_force_ ? std::span<const AnalyticShape>{} : analytic);
 }
 
 void Geometry::intersect(RayBlock& rays, int count, Hit* hits) const {
@@ -82,15 +91,31 @@ std::uint32_t Geometry::occluded(RayBlock& rays, int count) const {
 
 void Geometry::find_surface(const Ray& ray, const Hit& hit, SurfacePoint& point) const {
     point.shape = hit.shape;
-    if (hit.triangle)
+    if (hit.instance >= 0)
+        surface_of_instance(ray, hit, point);
+    else if (hit.triangle)
         surface_of_triangle(hit, point);
     else
-        surface_of_analytic(ray, hit, point);
+        surface_of_analytic(analytic[hit.primitive], ray, hit, point);
     point.offset = relative_offset * std::max(point.position.cwiseAbs().maxCoeff(), 0.1f * radius_);
 }
 
-void Geometry::surface_of_analytic(const Ray& ray, const Hit& hit, SurfacePoint& point) const {
-    const AnalyticShape& s = analytic[hit.primitive];
+void Geometry::surface_of_instance(const Ray& ray, const Hit& hit, SurfacePoint& point) const {
+    // Find the point in the group's own space, and bring it to the world: normals by the inverse transpose.
+    const Eigen::Matrix4f m = instances[hit.instance].at(ray.time);
+    const Eigen::Matrix3f linear = m.block<3, 3>(0, 0), inverse = linear.inverse();
+    const Vec3 place = m.block<3, 1>(0, 3);
+    if (hit.triangle)
+        surface_of_triangle(hit, point);
+    else
+        surface_of_analytic(group_analytic[hit.primitive],
+                            {inverse * (ray.origin - place), inverse * ray.direction, ray.t_max}, hit, point);
+    point.position = linear * point.position + place;
+    point.geometric_normal = (inverse.transpose() * point.geometric_normal).normalized();
+    point.frame = Frame((inverse.transpose() * point.frame.n).normalized(), linear * point.frame.s);
+}
+
+void Geometry::surface_of_analytic(const AnalyticShape& s, const Ray& ray, const Hit& hit, SurfacePoint& point) const {
     if (s.kind != AnalyticShape::Kind::sphere) {
         point.position = s.o + hit.u * s.a + hit.v * s.b;
         point.frame = s.frame;

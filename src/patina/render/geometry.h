@@ -9,6 +9,7 @@
 
 #include "patina/core/mesh.h"
 #include "patina/render/embree_scene.h"
+#include "patina/render/instances.h"
 #include "patina/render/sampling.h"
 #include "patina/render/shapes.h"
 
@@ -21,6 +22,7 @@ struct Shape {
     int interior = -1, exterior = -1;  // media inside and outside, -1: none
     int first = 0, count = 0;          // its analytic shapes, or the one mesh
     bool is_mesh = false;
+    int group = -1;  // of a group: in its own space, seen through instances only
     float area = 0;
 
     bool bounds_media() const { return interior >= 0 || exterior >= 0; }
@@ -28,6 +30,7 @@ struct Shape {
 
 struct MeshShape {
     int shape = -1;
+    int group = -1;
     std::shared_ptr<const TriangleMesh> mesh;  // world coordinates; normals empty for flat shading
     bool flipped = false;
     DiscreteDistribution by_area;  // of its triangles
@@ -58,6 +61,9 @@ class Geometry {
     std::vector<Shape> shapes;
     std::vector<AnalyticShape> analytic;
     std::vector<MeshShape> meshes;
+    std::vector<AnalyticShape> group_analytic;  // of all groups, each in its own space
+    std::vector<ShapeGroup> groups;
+    std::vector<Instance> instances;
     bool needs_uv = true;  // false when nothing in the scene varies over surfaces: spares spheres their angles
 
     // Builds the acceleration structure and the bounds; call once, when all shapes are in.
@@ -97,16 +103,19 @@ class Geometry {
     // Density per solid angle with which sample_shape() finds what `hit` is, for a ray from `from`.
     float shape_pdf(const Hit& hit, const SurfacePoint& at, const Vec3& from) const;
 
+    // Does anything move while the shutter is open?
+    bool moves() const { return moves_; }
     const Vec3& centre() const { return centre_; }
     float radius() const { return radius_; }  // of a sphere about the centre that holds everything
 
   private:
-    void surface_of_analytic(const Ray& ray, const Hit& hit, SurfacePoint& point) const;
+    void surface_of_instance(const Ray& ray, const Hit& hit, SurfacePoint& point) const;
+    void surface_of_analytic(const AnalyticShape& shape, const Ray& ray, const Hit& hit, SurfacePoint& point) const;
     void surface_of_triangle(const Hit& hit, SurfacePoint& point) const;
     bool sample_sphere(const AnalyticShape& sphere, const Vec3& from, const Vec2& u, ShapeSample& sample) const;
 
     std::unique_ptr<EmbreeScene> embree_;
-    bool brute_force_ = true;
+    bool brute_force_ = true, moves_ = false;
     Vec3 centre_ = Vec3::Zero();
     float radius_ = 1;
 };

@@ -10,8 +10,9 @@ namespace patina::render {
 
 namespace {
 
-const ParameterDescriptor to_world = {"to_world", "transform", "",
-                                      "identity", "",          "from the plugin's own space to the world"};
+const ParameterDescriptor to_world = {
+    "to_world", "transform", "",
+    "identity", "",          "from the plugin's own space to the world; of shapes also an animation"};
 const ParameterDescriptor flip_normals = {"flip_normals", "boolean", "", "false", "", "turns the outside inside"};
 
 void add_shapes(std::vector<PluginDescriptor>& all) {
@@ -40,6 +41,11 @@ const std::vector<ParameterDescriptor> polarization = {
     {"polarization_ellipticity", "number", "degree", "45 (circular), 22.5", "-45 .. 45", "> 0 right-handed"},
     {"polarization_axis", "vector", "", "own x axis; surroundings y", "", "where angles count from"},
     {"stokes", "string", "", "", "Q^2 + U^2 + V^2 <= I^2", "I, Q, U, V instead of the words"}};
+
+void add_copies(std::vector<PluginDescriptor>& all) {
+    all.push_back({"shape", "shapegroup", "Shapes to be copied by instances; not seen itself.", {}});
+    all.push_back({"shape", "instance", "A copy of a shapegroup, which it refers to.", {to_world}});
+}
 
 void add_emitters(std::vector<PluginDescriptor>& all) {
     const auto emitter = [&](const char* name, const char* doc, std::vector<ParameterDescriptor> parameters) {
@@ -182,6 +188,7 @@ std::vector<PluginDescriptor> build_registry() {
     std::vector<PluginDescriptor> all = bsdf_descriptors();
     for (PluginDescriptor& medium : medium_descriptors()) all.push_back(std::move(medium));
     add_shapes(all);
+    add_copies(all);
     add_emitters(all);
     add_sensors(all);
     add_film(all);

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "patina/core/error.h"
 #include "patina/core/parallel.h"
@@ -32,6 +33,19 @@ constexpr int fewest_for_noise = 16;
 // A share of samples that are not finite above which the picture is not to be trusted.
 constexpr double tolerated_non_finite = 1e-4;
 
+// Refuses a film that the machine's memory cannot hold: the sums of its samples and the developed picture.
+void expect_room(const FilmSettings& film, const Scene& scene, const RenderOptions& options) {
+    const double pixels = static_cast<double>(film.crop_width) * film.crop_height;
+    const double needed = pixels * 2 * static_cast<double>(film.bin_edges_nm.size() + 4) * sizeof(Float4);
+    const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    if (needed < 0.9 * memory) return;
+    const std::string problem = fmt::format("a film of {} x {} pixels is too large", film.crop_width, film.crop_height);
+    const std::string why = fmt::format("it takes {:.1f} GB, the machine has {:.1f}", needed * 1e-9, memory * 1e-9);
+    if (options.size) throw Error(ErrorKind::usage, fmt::format("{} ({}); take a smaller --size", problem, why));
+    const auto node = scene.sensor_node->only_child("film");
+    throw input_error(node ? node->where : scene.sensor_node->where, problem, why, "render windows of it with --crop");
+}
+
 FilmSettings film_of(const Scene& scene, const RenderOptions& options) {
     FilmSettings film = scene.film;
     if (options.size) {
@@ -55,6 +69,7 @@ FilmSettings film_of(const Scene& scene, const RenderOptions& options) {
         throw Error(ErrorKind::usage, "spectral bins must lie within 380 .. 780 nm");
     for (std::size_t b = 1; b < edges.size(); ++b)
         if (!(edges[b] - edges[b - 1] >= 1)) throw Error(ErrorKind::usage, "spectral bins must be 1 nm wide or more");
+    expect_room(film, scene, options);
     return film;
 }
 
@@ -221,7 +236,7 @@ class Renderer {
         scale(pictures.whole);
         for (auto& [name, part] : pictures.parts) scale(part);
         pictures.measurement = measure(pictures.whole, sensor_.quantity, sensor_.kind == Sensor::Kind::far_field);
-        pictures.measurement->exposure_s = sensor_.shutter_close - sensor_.shutter_open;
+        pictures.measurement->exposure_s = sensor_.exposure_s;
     }
 
   private:
@@ -322,6 +337,8 @@ class Renderer {
         Sensor::CameraRay* rays[wide_lanes];
         for (int i = first; i < last; ++i) rays[i - first] = &block.samples[i].camera;
         sensor_.rays(film_x, film_y, lens_x, lens_y, last - first, rays);
+        if (scene_.geometry.moves())
+            for (int i = first; i < last; ++i) block.samples[i].camera.ray.time = block.samples[i].sampler.next();
     }
 
     // False: the sample is left out, for it is not finite.

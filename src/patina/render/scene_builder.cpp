@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "patina/core/error.h"
+#include "patina/render/instance_builder.h"
 #include "patina/render/plugins.h"
 #include "patina/render/scene.h"
 #include "patina/render/scene_white.h"
@@ -27,7 +28,8 @@ class SceneBuilder {
         if ((scene_->integrator_node = root_.only_child("integrator"))) build_integrator(*scene_->integrator_node);
         for (const auto& node : root_.children_of("bsdf")) bsdf_index(node);
         for (const auto& node : root_.children_of("medium")) medium_index(node);
-        for (const auto& node : root_.children_of("shape")) build_shape(*node);
+        for (const auto& node : root_.children_of("shape"))
+            if (!instances_.add(*node)) build_shape(*node, -1);
         if (sensors_.empty()) throw input_error(root_.where, "the scene has no sensor");
         for (const auto& node : root_.children_of("emitter")) {
             states_.push_back(build_polarization(*node, node->transform("to_world")));
@@ -39,6 +41,7 @@ class SceneBuilder {
             throw input_error(root_.where, "the scene is dark", "it has no emitter",
                               "add one, for instance \"constant\"");
         scene_->geometry.needs_uv = any_texture(root_);
+        choose_sensor();
         scene_->geometry.commit();
         build_camera();
         scene_->notes["white"] = lit_by_daylight(root_) ? "D65" : "E";
@@ -47,8 +50,13 @@ class SceneBuilder {
     }
 
   private:
-    void build_camera() {
+    void choose_sensor() {
         std::tie(scene_->sensor_node, scene_->sensor_shape) = chosen_sensor();
+        const Shutter shutter = build_shutter(*scene_->sensor_node);
+        instances_.place(shutter.open_s, shutter.close_s);
+    }
+
+    void build_camera() {
         const Properties& node = *scene_->sensor_node;
         expect_plugin(node);
         if (const auto film = node.only_child("film")) {
@@ -126,8 +134,12 @@ class SceneBuilder {
         return default_bsdf_;
     }
 
-    void build_shape(const Properties& node) {
-        const int index = append_shape(node, resources_, scene_->geometry);
+    void build_shape(const Properties& node, int group) {
+        const int index = append_shape(node, resources_, scene_->geometry, group);
+        for (const char* lamp_or_meter : {"emitter", "sensor"})
+            if (const auto child = group >= 0 ? node.only_child(lamp_or_meter) : nullptr)
+                throw input_error(child->where,
+                                  fmt::format("no {} can stand in what moves or is copied", child->category));
         const auto material = node.only_child("bsdf");
         scene_->geometry.shapes[index].bsdf = material ? bsdf_index(material) : default_bsdf();
         scene_->geometry.shapes[index].interior = side_medium(node, "interior");
@@ -156,6 +168,8 @@ class SceneBuilder {
     std::map<const Properties*, int> bsdf_of_node_;  // -1 while being built
     std::map<const Properties*, int> medium_of_node_;
     int default_bsdf_ = -1;
+    InstanceBuilder instances_{scene_->geometry,
+                               [this](const Properties& node, int group) { build_shape(node, group); }};
     std::vector<Emitter> emitters_;
     std::vector<EmitterPolarization> states_;  // of the emitters
 };

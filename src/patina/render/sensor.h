@@ -30,7 +30,7 @@ struct Sensor {
     const Geometry* geometry = nullptr;             // of meters on shapes and of far away
     int shape = -1;                                 // of meters on shapes
     bool targeted = false;                          // distant: rays pass through `origin`
-    float shutter_open = 0, shutter_close = 0;
+    double exposure_s = 0;
 
     Quantity quantity = Quantity::radiance;
     double scale = 1;  // of the mean radiance
@@ -94,6 +94,12 @@ struct Sensor {
 // The film's size decides the aspect; `shape` is the one the sensor stands in, -1 for none. The geometry must outlive
 // the sensor. Throws Error(input) for unknown sensors and values out of range.
 Sensor build_sensor(const Properties& node, int film_width, int film_height, const Geometry& geometry, int shape);
+
+// When light counts: `shutter_open` and `shutter_close` of a sensor.
+struct Shutter {
+    double open_s = 0, close_s = 0;
+};
+Shutter build_shutter(const Properties& node);
 
 // The film of a sensor that names none: one pixel for a meter of one number.
 std::pair<int, int> default_film_size(const Properties& node);

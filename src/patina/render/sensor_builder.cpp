@@ -125,22 +125,22 @@ void build_far_meter(const Properties& node, Sensor& sensor) {
     if (!sensor.origin.allFinite()) throw input_error(node.location_of("target"), "the target is not finite");
 }
 
-void build_shutter(const Properties& node, Sensor& sensor) {
-    const double open = node.number("shutter_open", 0.0), close = node.number("shutter_close", open);
-    if (!std::isfinite(open) || !std::isfinite(close) || close < open)
-        throw input_error(node.location_of("shutter_close"), "the shutter closes before it opens",
-                          fmt::format("open {}, close {}", open, close));
-    sensor.shutter_open = static_cast<float>(open);
-    sensor.shutter_close = static_cast<float>(close);
-}
-
 }  // namespace
+
+Shutter build_shutter(const Properties& node) {
+    const double open_s = node.number("shutter_open", 0.0), close_s = node.number("shutter_close", open_s);
+    if (!std::isfinite(open_s) || !std::isfinite(close_s) || close_s < open_s)
+        throw input_error(node.location_of("shutter_close"), "the shutter closes before it opens",
+                          fmt::format("open {}, close {}", open_s, close_s));
+    return {open_s, close_s};
+}
 
 Sensor build_sensor(const Properties& node, int film_width, int film_height, const Geometry& geometry, int shape) {
     expect_plugin(node);
     Sensor sensor;
     sensor.geometry = &geometry;
-    build_shutter(node, sensor);
+    const Shutter shutter = build_shutter(node);
+    sensor.exposure_s = shutter.close_s - shutter.open_s;
     if (node.type == "perspective" || node.type == "thinlens" || node.type == "orthographic") {
         build_camera(node, static_cast<double>(film_width) / film_height, sensor);
     } else if (node.type == "radiancemeter") {

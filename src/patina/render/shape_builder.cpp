@@ -11,8 +11,10 @@ namespace {
 
 Eigen::Matrix4d placement(const Properties& node) {
     const Eigen::Matrix4d m = node.transform("to_world");
-    const double determinant = m.block<3, 3>(0, 0).determinant();
-    if (!m.allFinite() || determinant == 0)
+    const Eigen::Matrix3d linear = m.block<3, 3>(0, 0);
+    // Flat to single precision counts as flat.
+    const bool flat = !(std::abs(linear.determinant()) > 1e-20 * std::pow(linear.norm(), 3));
+    if (!m.allFinite() || flat || m.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
         throw input_error(node.location_of("to_world"),
                           fmt::format("the transform of the {} is degenerate", node.type));
     return m;
@@ -40,7 +42,7 @@ AnalyticShape face(const Eigen::Matrix4d& m, AnalyticShape::Kind kind, const Eig
     const Eigen::Matrix3d linear = m.block<3, 3>(0, 0);
     const Eigen::Vector3d world = (m * centre.homogeneous()).head<3>();
     const Eigen::Vector3d a = linear * half_u, b = linear * half_v;
-    if (!(a.cross(b).norm() > 1e-30)) throw input_error(where, "a face of the shape has no area");
+    if (!(a.cross(b).norm() > 1e-18)) throw input_error(where, "a face of the shape has no area");
     AnalyticShape s = AnalyticShape::plane(kind, world.cast<float>(), a.cast<float>(), b.cast<float>());
     // A mirroring transform turns the cross product over, not the outside.
     s.flipped = linear.determinant() < 0;
@@ -123,7 +125,7 @@ MeshShape mesh_shape(const Properties& node, const SceneResources& resources, fl
     std::erase_if(mesh->triangles, [&](const auto& t) {
         const Vec3 cross =
             (mesh->positions[t[1]] - mesh->positions[t[0]]).cross(mesh->positions[t[2]] - mesh->positions[t[0]]);
-        if (!(cross.squaredNorm() > 0)) return true;
+        if (!(cross.squaredNorm() > 1e-37f)) return true;
         areas.push_back(0.5 * cross.norm());
         return false;
     });
@@ -135,32 +137,55 @@ MeshShape mesh_shape(const Properties& node, const SceneResources& resources, fl
     return shape;
 }
 
+// Single precision squares and divides these.
+constexpr float largest_coordinate = 1e12f, smallest_area = 1e-24f;
+
+void expect_sane_size(const Properties& node, const Shape& shape, const Geometry& geometry) {
+    float reach = 0;
+    const std::vector<AnalyticShape>& list = shape.group < 0 ? geometry.analytic : geometry.group_analytic;
+    if (shape.is_mesh)
+        for (const Vec3& p : geometry.meshes[shape.first].mesh->positions)
+            reach = std::max(reach, p.cwiseAbs().maxCoeff());
+    else
+        for (int i = shape.first; i < shape.first + shape.count; ++i)
+            reach = std::max({reach, list[i].o.cwiseAbs().maxCoeff(), list[i].radius});
+    if (!(reach < largest_coordinate) || !(shape.area < sqr(largest_coordinate)))
+        throw input_error(node.where, fmt::format("the {} is too large or too far away", node.type), "",
+                          "keep coordinates below 1e12");
+    if (!(shape.area > smallest_area))
+        throw input_error(node.where, fmt::format("the {} is too small", node.type),
+                          fmt::format("its area is {}", shape.area));
+}
+
 }  // namespace
 
-int append_shape(const Properties& node, const SceneResources& resources, Geometry& geometry) {
+int append_shape(const Properties& node, const SceneResources& resources, Geometry& geometry, int group) {
     expect_plugin(node);
     const int index = static_cast<int>(geometry.shapes.size());
     const bool flip = node.boolean("flip_normals", false);
     Shape shape;
+    shape.group = group;
     if (node.type == "obj" || node.type == "ply") {
         MeshShape mesh = mesh_shape(node, resources, shape.area);
         mesh.shape = index;
+        mesh.group = group;
         mesh.flipped = flip;
         shape.is_mesh = true;
         shape.first = static_cast<int>(geometry.meshes.size());
         shape.count = 1;
         geometry.meshes.push_back(std::move(mesh));
     } else {
-        shape.first = static_cast<int>(geometry.analytic.size());
+        std::vector<AnalyticShape>& list = group < 0 ? geometry.analytic : geometry.group_analytic;
+        shape.first = static_cast<int>(list.size());
         for (AnalyticShape& s : analytic_shapes(node)) {
             s.shape = index;
             s.flipped ^= flip;
             shape.area += s.area;
-            geometry.analytic.push_back(s);
+            list.push_back(s);
         }
-        shape.count = static_cast<int>(geometry.analytic.size()) - shape.first;
+        shape.count = static_cast<int>(list.size()) - shape.first;
     }
-    if (!std::isfinite(shape.area)) throw input_error(node.where, "the shape is not finite");
+    expect_sane_size(node, shape, geometry);
     geometry.shapes.push_back(shape);
     return index;
 }

@@ -8,7 +8,7 @@
 namespace patina::render {
 
 // Appends the shape a node describes (without its material and emitter); returns its index in geometry.shapes.
-// Throws Error(input) for degenerate or not finite geometry.
-int append_shape(const Properties& node, const SceneResources& resources, Geometry& geometry);
+// In a group (geometry.h) it stays in its own space. Throws Error(input) for degenerate or not finite geometry.
+int append_shape(const Properties& node, const SceneResources& resources, Geometry& geometry, int group = -1);
 
 }  // namespace patina::render

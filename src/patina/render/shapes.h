@@ -12,6 +12,7 @@ struct Hit {
     int primitive = -1;  // of the shape's kind: analytic shape or triangle
     bool triangle = false;
     float u = 0, v = 0;  // barycentric coordinates in a triangle, parameters in a parallelogram
+    int instance = -1;   // through which the shape is seen; then analytic shapes are those of its group
 };
 
 // What sixteen rays met. Rays that reach nowhere (t_max < 0) meet nothing.
@@ -19,6 +20,7 @@ struct RayBlock {
     FloatLanes origin_x, origin_y, origin_z, direction_x, direction_y, direction_z;
     FloatLanes t;  // as far as the ray reaches; after a query as far as the hit
     FloatLanes u, v;
+    FloatLanes time;     // of each ray, for what moves
     IntLanes primitive;  // analytic shape, -1: none
 
     void set(int lane, const Ray& ray) {
@@ -26,11 +28,13 @@ struct RayBlock {
         direction_x[lane] = ray.direction.x(), direction_y[lane] = ray.direction.y();
         direction_z[lane] = ray.direction.z();
         t[lane] = ray.t_max;
+        time[lane] = ray.time;
     }
     Ray ray(int lane) const {
         return {{origin_x[lane], origin_y[lane], origin_z[lane]},
                 {direction_x[lane], direction_y[lane], direction_z[lane]},
-                t[lane]};
+                t[lane],
+                time[lane]};
     }
 };
 
@@ -63,6 +67,10 @@ struct AnalyticShape {
     static AnalyticShape sphere(const Vec3& centre, float radius, const Eigen::Matrix3f& rotation);
     // Null area is the caller's error.
     static AnalyticShape plane(Kind kind, const Vec3& centre, const Vec3& half_u, const Vec3& half_v);
+
+    void set_frame() {
+        if (kind != Kind::sphere) frame = Frame(flipped ? Vec3(-n) : n, a);
+    }
 
     // Distance to the nearest intersection beyond 0, infinite when there is none; u, v of planes.
     template <class F>

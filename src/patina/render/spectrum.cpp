@@ -37,7 +37,10 @@ Spectrum reflectance_table(const SpectrumSpec& spec, const SourceLocation& where
     return Spectrum(spectral::reflectance_spectrum(spec, where));
 }
 Spectrum emission_table(const SpectrumSpec& spec, const SourceLocation& where) {
-    return Spectrum(spectral::emission_spectrum(spec, where));
+    Spectrum table(spectral::emission_spectrum(spec, where));
+    // Beyond this products of two overflow single precision.
+    if (!(table.largest() < 1e15f)) throw input_error(where, "the light is too strong", "", "keep it below 1e15");
+    return table;
 }
 Spectrum property_table(const SpectrumSpec& spec, const SourceLocation& where) {
     return Spectrum(spectral::property_spectrum(spec, where));

@@ -79,6 +79,8 @@ Texture Texture::build(const Properties& texture, const SceneResources& resource
     expect_plugin(texture);
     Texture result;
     const Eigen::Matrix4d to_uv = texture.transform("to_uv");
+    if (!(to_uv.cwiseAbs().maxCoeff() < 1e6))
+        throw input_error(texture.location_of("to_uv"), "the transform of the texture is too large");
     // Mitsuba's to_uv is a 4x4 transform of which the plane part counts.
     result.to_uv_ << static_cast<float>(to_uv(0, 0)), static_cast<float>(to_uv(0, 1)), static_cast<float>(to_uv(0, 3)),
         static_cast<float>(to_uv(1, 0)), static_cast<float>(to_uv(1, 1)), static_cast<float>(to_uv(1, 3)), 0, 0, 1;

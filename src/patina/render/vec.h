@@ -74,6 +74,7 @@ inline Vec3 common_perpendicular(const Vec3& a, const Vec3& b) {
 struct Ray {
     Vec3 origin, direction;
     float t_max = INFINITY;
+    float time = 0;  // 0: the shutter opens, 1: it closes
 };
 
 }  // namespace patina::render

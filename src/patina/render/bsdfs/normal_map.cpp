@@ -30,6 +30,8 @@ std::shared_ptr<const Bitmap> read_picture(const Properties& node, const BsdfBui
     if (!texture->boolean("raw", true))
         throw input_error(texture->location_of("raw"), "the picture is data, not colour", "", "set raw to true");
     const Eigen::Matrix4d m = texture->transform("to_uv");
+    if (!(m.cwiseAbs().maxCoeff() < 1e6))
+        throw input_error(texture->location_of("to_uv"), "the transform of the texture is too large");
     map.to_uv << static_cast<float>(m(0, 0)), static_cast<float>(m(0, 1)), static_cast<float>(m(0, 3)),
         static_cast<float>(m(1, 0)), static_cast<float>(m(1, 1)), static_cast<float>(m(1, 3)), 0, 0, 1;
     auto image = builder.resources->load_bitmap(texture->string("filename"), true);

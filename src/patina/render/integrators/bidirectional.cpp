@@ -33,7 +33,9 @@ struct JoinedPath {
         const int k = static_cast<int>(places.size()) - 1;
         double sum = 1, ratio = 1;
         const auto count = [&](int t) {
-            if (possible(t)) sum += std::pow(ratio * lamp_factor(t) / lamp_factor(s), 2);
+            // Vertices that coincide have no density from either side: no other strategy counts beyond them.
+            const double density = ratio * lamp_factor(t) / lamp_factor(s);
+            if (possible(t) && !std::isnan(density)) sum += density * density;
         };
         for (int t = s + 1; t <= k; ++t) {
             ratio *= places[t - 1].from_light / places[t - 1].from_camera;
@@ -109,7 +111,7 @@ class Joiner {
         if (!scene.lights.any_sampled() || c_.only_delta(v)) return;
         if (!scene.lights.sample(scene.geometry, v.position(), c_.w, choice, u, light)) return;
         if (!c_.evaluate(v, v.to_previous, light.direction, value)) return;
-        const Ray shadow{v.point.origin(light.direction), light.direction, light.distance * (1 - 1e-4f)};
+        const Ray shadow{v.point.origin(light.direction), light.direction, light.distance * (1 - 1e-4f), c_.time};
         if (scene.geometry.occluded(shadow)) return;
 
         double share = 1;
@@ -149,7 +151,7 @@ class Joiner {
         BsdfValue at_y, at_z;
         if (c_.only_delta(y) || c_.only_delta(z)) return;
         if (!c_.evaluate(y, direction, y.to_previous, at_y) || !c_.evaluate(z, z.to_previous, -direction, at_z)) return;
-        const Ray shadow{y.point.origin(direction), direction, std::sqrt(distance2) * (1 - 1e-4f)};
+        const Ray shadow{y.point.origin(direction), direction, std::sqrt(distance2) * (1 - 1e-4f), c_.time};
         if (c_.scene().geometry.occluded(shadow)) return;
 
         // Light through y and z to the camera, in this order.
@@ -172,7 +174,8 @@ class Joiner {
         if (c_.only_delta(y) || !c_.problem.sensor.see(y.position(), lens, sight)) return;
         const Vec3 direction = -sight.direction;
         if (!c_.evaluate(y, direction, y.to_previous, at_y)) return;
-        if (c_.scene().geometry.occluded({y.point.origin(direction), direction, sight.distance * (1 - 1e-4f)})) return;
+        const Ray shadow{y.point.origin(direction), direction, sight.distance * (1 - 1e-4f), c_.time};
+        if (c_.scene().geometry.occluded(shadow)) return;
         LightBeam beam = y.beam;
         at_y.f.scale(splat(leaving_factor(y, direction) * sight.importance / sqr(sight.distance)));
         beam.scatter(at_y.f, direction);
@@ -317,7 +320,7 @@ void BidirectionalIntegrator::trace(const TransportProblem& problem, const Senso
                                     const Wavelengths& wavelengths, Sampler& sampler, PathRecord& record) const {
     const int depth = settings_.max_depth < 0 ? std::numeric_limits<int>::max() / 2 : settings_.max_depth;
     if (depth == 0) return;
-    const SubpathContext context{problem, wavelengths, *emission_, settings_.rr_depth};
+    const SubpathContext context{problem, wavelengths, *emission_, settings_.rr_depth, camera.ray.time};
     std::vector<PathVertex> camera_path, light_path;
     camera_path.reserve(8);
     light_path.reserve(8);

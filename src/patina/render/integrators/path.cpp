@@ -74,7 +74,7 @@ class PathState {
                            -light.direction, value.f, -ray_.direction);
         direct_events_ = after_continuous_event(shading, outgoing);
         // Stop short of the lamp itself; a share of the distance covers the rounding of its position.
-        shadow = {point_.origin(light.direction), light.direction, light.distance * (1 - 1e-4f)};
+        shadow = {point_.origin(light.direction), light.direction, light.distance * (1 - 1e-4f), ray_.time};
         return true;
     }
     void add_direct_light() { add(direct_, direct_events_); }

@@ -96,6 +96,8 @@ RadiosityIntegrator::Row RadiosityIntegrator::cast_rays(const TransportProblem& 
 }
 
 void RadiosityIntegrator::prepare(const TransportProblem& problem, const JobControl& control) {
+    if (!problem.scene.geometry.instances.empty())
+        throw input_error({}, "radiosity does not know instances", "a patch belongs to one shape", "use path");
     patches_.emplace(problem.scene, settings_.patches, most_patches);
     const int n = patches_->count();
     std::vector<Row> rows(n);

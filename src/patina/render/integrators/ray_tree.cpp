@@ -95,7 +95,7 @@ class Tree {
             const float choice = std::min((i + sampler_.next()) / samples, last_unit_float);
             if (!scene_.lights.sample(scene_.geometry, point.position, w_, choice, sampler_.next2(), light)) continue;
             if (!bsdf_evaluate(bsdf(point), shading, outgoing, point.frame.to_local(light.direction), value)) continue;
-            const Ray shadow{point.origin(light.direction), light.direction, light.distance * (1 - 1e-4f)};
+            const Ray shadow{point.origin(light.direction), light.direction, light.distance * (1 - 1e-4f), b.ray.time};
             if (scene_.geometry.occluded(shadow)) continue;
             const float part = light.delta ? 1.0f : power_heuristic(samples * light.pdf, lobe_samples(b) * value.pdf);
             axes_to_world(point, value.f);

@@ -133,7 +133,7 @@ void trace_light_path(const SubpathContext& context, int most_vertices, Sampler&
     lamp.forward = emitted.origin_pdf;
     path.push_back(lamp);
 
-    Ray ray{emitted.position, emitted.direction, INFINITY};
+    Ray ray{emitted.position, emitted.direction, INFINITY, context.time};
     LightBeam beam = context.scene().lights.beam(emitted.emitter, emitted.power, emitted.direction);
     const float emitted_power = largest(emitted.power);
     bool hero_only = false;

@@ -39,6 +39,7 @@ struct SubpathContext {
     const Wavelengths& w;
     const Emission& emission;
     int rr_depth;
+    float time;  // of the sample: both halves see the same moment
 
     const Scene& scene() const { return problem.scene; }
     const Bsdf& bsdf(const PathVertex& v) const { return scene().bsdfs[scene().geometry.shapes[v.point.shape].bsdf]; }

@@ -19,7 +19,7 @@ float disk_density(const DipoleProfile& profile, Float4 share, float r) {
 }  // namespace
 
 bool sample_subsurface(const Geometry& geometry, const DipoleProfile& profile, const SurfacePoint& from, Float4 share,
-                       float u_axis, const Vec2& u_disk, float u_hit, SubsurfaceEntry& entry) {
+                       float u_axis, const Vec2& u_disk, float u_hit, SubsurfaceEntry& entry, float time) {
     // Choose an axis, a wavelength, and a place on the disk.
     const Frame frame(from.geometric_normal);
     const std::array<Vec3, 3> axes = {frame.s, frame.t, frame.n};
@@ -44,7 +44,7 @@ bool sample_subsurface(const Geometry& geometry, const DipoleProfile& profile, c
     const float decay = std::min(std::min(profile.sigma_tr[0], profile.sigma_tr[1]),
                                  std::min(profile.sigma_tr[2], profile.sigma_tr[3]));
     const float reach = std::min(size, farthest_decay / std::max(decay, 1e-30f));
-    Ray ray{foot - reach * axes[axis], axes[axis], 2 * reach};
+    Ray ray{foot - reach * axes[axis], axes[axis], 2 * reach, time};
     std::array<SurfacePoint, most_hits> found;
     int count = 0;
     for (Hit hit; count < most_hits && geometry.intersect(ray, hit); hit = Hit{}) {

@@ -16,8 +16,9 @@ struct SubsurfaceEntry {
     Float4 weight;  // profile over density
 };
 
-// `share`: with which probability each wavelength's profile is drawn from. False: none is found this time.
+// `time` is the moment that the path sees. `share`: with which probability each wavelength's profile is drawn from.
+// False: none is found this time.
 bool sample_subsurface(const Geometry& geometry, const DipoleProfile& profile, const SurfacePoint& from, Float4 share,
-                       float u_axis, const Vec2& u_disk, float u_hit, SubsurfaceEntry& entry);
+                       float u_axis, const Vec2& u_disk, float u_hit, SubsurfaceEntry& entry, float time = 0);
 
 }  // namespace patina::render

@@ -192,7 +192,7 @@ class VolumePath {
         SubsurfaceEntry entry;
         const float u_axis = sampler_.next(), u_hit = sampler_.next();
         if (!sample_subsurface(scene_.geometry, matter.profile(w_), point_, shares(), u_axis, sampler_.next2(), u_hit,
-                               entry))
+                               entry, ray_.time))
             return false;
         point_ = entry.point;
         ray_.direction = -point_.geometric_normal;
@@ -232,7 +232,7 @@ class VolumePath {
         last_pdf_ = 0.25f * inv_pi_f * density;
         last_delta_ = false;
         counts_passing_ = true;
-        ray_ = {position_, direction};
+        ray_ = {position_, direction, INFINITY, ray_.time};
     }
 
     // Ends paths that carry little; false: ended. Radiance inside a dense medium is larger without being worth more.
@@ -271,7 +271,7 @@ class VolumePath {
         counts_passing_ = false;
         const Vec3 direction = point_.frame.to_world(sample.incident).normalized();
         medium_ = side_medium(direction);
-        ray_ = {point_.origin(direction), direction};
+        ray_ = {point_.origin(direction), direction, INFINITY, ray_.time};
     }
 
     // Light of a lamp that enters translucent matter at the point.
@@ -317,7 +317,7 @@ class VolumePath {
 
     // What media and boundaries between a point and a lamp let pass.
     Float4 transmittance(const LightSample& light, const Vec3& from, int medium) const {
-        Ray ray{from, light.direction};
+        Ray ray{from, light.direction, INFINITY, ray_.time};
         // Stop short of the lamp itself; a share of the distance covers the rounding of its position.
         const float short_of = 1e-4f * light.distance;
         float rest = light.distance;
