@@ -9,6 +9,7 @@ import argparse
 import html
 import json
 import pathlib
+import struct
 import subprocess
 import sys
 import time
@@ -62,7 +63,8 @@ class Gallery:
         self.spp, self.size = arguments.spp, arguments.size
         self.out.mkdir(parents=True, exist_ok=True)
         self.files = {name: self.out / file for name, file in
-                      [("table", "paint.h5"), ("pbsdf", "paint.pbsdf"), ("merl", "paint.binary"), ("studio", "studio.pfm")]}
+                      [("table", "paint.h5"), ("pbsdf", "paint.pbsdf"), ("merl", "paint.binary"), ("studio", "studio.pfm"),
+                       ("bumps", "bumps.pfm")]}
         self.failures = []
 
     def run(self, *words):
@@ -76,6 +78,8 @@ class Gallery:
     def make_inputs(self):
         if not self.files["studio"].exists():
             subprocess.run([sys.executable, self.root / "tools" / "make_studio.py", self.files["studio"]], check=True)
+        if not self.files["bumps"].exists():
+            write_bumps(self.files["bumps"])
         if not self.files["table"].exists():
             self.run("solve", self.root / "examples" / "tio2_on_aluminium.toml", "-o", self.files["table"],
                      "--wavelengths", "400:700:50")
@@ -112,9 +116,9 @@ class Gallery:
 
     @staticmethod
     def figure(images, code, caption, width):
-        tags = "".join(f'<img src="{image.name}" alt="" style="width:{width}px">' for image in images)
+        tags = "".join(f'<img src="{image.name}" alt="" style="height:{width}px">' for image in images)
         label = f"<code>{html.escape(code)}</code> " if code else ""
-        return (f'<figure style="width:{len(images) * (width + 4)}px">{tags}'
+        return (f'<figure style="width:min-content"><div style="white-space:nowrap">{tags}</div>'
                 f"<figcaption>{label}{html.escape(caption)}</figcaption></figure>")
 
     @staticmethod
@@ -142,6 +146,9 @@ class Gallery:
                              caption, 0.6) for name, caption, share in INTEGRATORS]
         figures.append(self.pair(self.render("media", scenes.FOG_ROOM, "--integrator", "volumetric", spp=2), "volumetric",
                                  "two balls of fog: Rayleigh's phase matrix, and Henyey and Greenstein's", 0.6))
+        figures.append(self.pair(self.render("translucent", scenes.TRANSLUCENT_ROOM, "--integrator", "volumetric", spp=2),
+                                 "volumetric", "a cloud of titania grains (Mie); marble by the dipole's diffusion",
+                                 0.6))
         diffuse = []
         for i, (name, caption, share, options) in enumerate(DIFFUSE_INTEGRATORS):
             extra = "".join(scenes.value("boolean", key, text) for key, text in options.items())
@@ -191,7 +198,7 @@ class Gallery:
 
     def polarization(self):
         picture = self.render("still_life", scenes.STILL_LIFE, spp=3, size=256)
-        reference = self.render("still_life_reference", scenes.STILL_LIFE, "--seed", 1, spp=12, size=256)
+        reference = self.render("still_life_reference", scenes.STILL_LIFE, "--seed", 1, spp=8, size=256)
         if not picture or not reference:
             return ""
         figures = []
@@ -212,7 +219,7 @@ class Gallery:
         return self.section("Polarization", "Plastic, gold, a linear polarizer at 45 degrees and a circular one standing on "
                             "a dark table: the views of <code>patina image</code>, and what a polarization camera makes of "
                             "them.", figures + ([] if error is None else [self.figure(
-                                [error], "error", "error of S0 against a picture of four times the samples", 256)]))
+                                [error], "error", "error of S0 against a picture of 2.7 times the samples", 256)]))
 
     def camera(self, picture):
         """The raw frame of a polarization camera with few electrons, and the DoLP it gives back."""
@@ -238,6 +245,17 @@ class Gallery:
         return 1 if self.failures else 0
 
 
+def write_bumps(path, width=512, height=256):
+    """Heights of round dimples, in sides of the texture."""
+    with open(path, "wb") as out:
+        out.write(f"Pf\n{width} {height}\n-1.0\n".encode())
+        for row in range(height):
+            for column in range(width):
+                x, y = (column * 24 / width) % 1 - 0.5, (row * 12 / height) % 1 - 0.5
+                depth = max(0.0, 1 - (x * x + y * y) / 0.16)
+                out.write(struct.pack("<f", -0.006 * depth * depth))
+
+
 PAGE_HEAD = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Patina: gallery</title>
 <style>body{font:15px/1.4 system-ui,sans-serif;max-width:1440px;margin:1.5em auto;padding:0 1em;color:#1c1f24;background:#fafafa}
 h2{margin:2em 0 .2em;border-top:1px solid #d6d9de;padding-top:1em}p{max-width:60em;margin:.3em 0 1em}
@@ -251,7 +269,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--patina", default="build/release/bin/patina")
     parser.add_argument("--out", default="out/gallery")
-    parser.add_argument("--spp", type=int, default=64)
+    parser.add_argument("--spp", type=int, default=48)
     parser.add_argument("--size", type=int, default=192)
     sys.exit(Gallery(parser.parse_args()).make())
 

@@ -15,7 +15,8 @@ GGX = value("string", "distribution", "ggx")
 CHECKS = ('<texture type="checkerboard" name="{}"><float name="color0" value="1"/><float name="color1" value="0"/>'
           '<transform name="to_uv"><scale x="8" y="4"/></transform></texture>')
 
-# (name of the pictures, what is seen, the model). {table}, {pbsdf}, {merl} stand for files made from a recipe.
+# (name of the pictures, what is seen, the model). {table}, {pbsdf}, {merl} stand for files made from a recipe,
+# {bumps} for a picture of heights.
 MODELS = [
     ("diffuse", "Lambert", bsdf("diffuse", value("rgb", "reflectance", "0.6, 0.06, 0.05"))),
     ("orennayar", "Oren-Nayar, sigma 35 degrees",
@@ -27,6 +28,9 @@ MODELS = [
           value("float", "weight_1", 0.25), value("vector", "lobe_2", "1, 1, 1"), value("float", "exponent_2", 8),
           value("float", "weight_2", 0.1))),
     ("plastic", "smooth plastic", bsdf("plastic", RED)),
+    ("dipole", "translucent matter by diffusion, here from where it entered",
+     bsdf("dipole", '<spectrum name="sigma_a" value="400:0.06, 500:0.04, 600:0.02, 700:0.02"/>',
+          value("float", "sigma_s", 25))),
     ("roughplastic", "rough plastic, alpha 0.2", bsdf("roughplastic", RED, value("float", "alpha", 0.2))),
     ("pplastic", "polarized plastic (Baek 2018), alpha 0.2", bsdf("pplastic", RED, value("float", "alpha", 0.2))),
     ("dielectric", "glass", bsdf("dielectric")),
@@ -45,6 +49,9 @@ MODELS = [
     ("mask", "rough copper with holes", bsdf("twosided", bsdf("mask", CHECKS.format("opacity"), COPPER_ROUGH))),
     ("blendbsdf", "plastic and rough copper in squares",
      bsdf("blendbsdf", CHECKS.format("weight"), bsdf("plastic", RED), COPPER_ROUGH)),
+    ("bumpmap", "rough copper, dimpled",
+     bsdf("bumpmap", '<texture type="bitmap" name="bumpmap"><string name="filename" value="{bumps}"/>'
+          '<boolean name="raw" value="true"/></texture>', value("float", "scale", 1), COPPER_ROUGH)),
     ("twosided", "rough copper, both sides alike", bsdf("twosided", COPPER_ROUGH)),
     ("null", "nothing", bsdf("null")),
     ("polarizer", "a linear polarizer wrapped round", bsdf("polarizer", value("float", "theta", 45))),
@@ -64,8 +71,8 @@ BALL = """<scene version="3.0.0">
         <float name="color0" value="0.5"/><float name="color1" value="0.15"/>
         <transform name="to_uv"><scale x="16" y="16"/></transform></texture></bsdf></shape>
 <shape type="rectangle">
-    <transform name="to_world"><scale value="0.8"/><lookat origin="-3.5, 4.5, 3" target="0, 1, 0" up="0, 1, 0"/></transform>
-    <emitter type="area"><float name="radiance" value="14"/></emitter></shape>
+    <transform name="to_world"><scale value="1.6"/><lookat origin="-3.5, 4.5, 3" target="0, 1, 0" up="0, 1, 0"/></transform>
+    <emitter type="area"><rgb name="radiance" value="3.5, 3.5, 3.5"/></emitter></shape>
 <emitter type="envmap"><string name="filename" value="{studio}"/><float name="scale" value="0.6"/></emitter>
 </scene>
 """
@@ -82,13 +89,13 @@ def room(*contents):
              wall('<translate y="1" z="-1"/>', white),
              wall('<rotate y="1" angle="90"/><translate x="-1" y="1"/>', "0.6, 0.06, 0.05"),
              wall('<rotate y="1" angle="-90"/><translate x="1" y="1"/>', "0.1, 0.45, 0.08")]
-    lamp = ('<shape type="rectangle"><transform name="to_world"><scale value="0.3"/><rotate x="1" angle="90"/>'
+    lamp = ('<shape type="rectangle"><transform name="to_world"><scale value="0.5"/><rotate x="1" angle="90"/>'
             '<translate y="1.98"/></transform><bsdf type="diffuse"><float name="reflectance" value="0"/></bsdf>'
-            '<emitter type="area"><float name="radiance" value="14"/></emitter></shape>')
+            '<emitter type="area"><rgb name="radiance" value="6, 6, 6"/></emitter></shape>')
     return ('<scene version="3.0.0"><integrator type="path"><integer name="max_depth" value="9"/></integrator>'
             '<sensor type="perspective"><float name="fov" value="34"/><transform name="to_world">'
             '<lookat origin="0, 1, 4.4" target="0, 1, 0" up="0, 1, 0"/></transform><film type="hdrfilm">'
-            '<rfilter type="gaussian"/></film></sensor>' + "".join(walls) + lamp + "".join(contents) + "</scene>\n")
+            '<rfilter type="box"/></film></sensor>' + "".join(walls) + lamp + "".join(contents) + "</scene>\n")
 
 
 def ball(centre, radius, model):
@@ -110,6 +117,16 @@ FOG_ROOM = room(
     ball("0.5, 0.4, 0.1", 0.4, bsdf("null") + '<medium name="interior" type="homogeneous"><float name="sigma_t" value="6"/>'
          '<rgb name="albedo" value="0.95, 0.8, 0.4"/><phase type="hg"><float name="g" value="0.6"/></phase></medium>'))
 
+# A cloud of titania of 30 nm, bluish and polarizing; and a ball that scatters as marble does, by diffusion.
+TRANSLUCENT_ROOM = room(
+    ball("-0.45, 0.5, -0.1", 0.45, bsdf("null") + '<medium name="interior" type="homogeneous">'
+         '<spectrum name="sigma_t" value="400:12, 500:4.9, 600:2.4, 700:1.3"/>'
+         '<float name="albedo" value="1"/><phase type="mie"><string name="material" value="TiO2-rutile"/>'
+         '<string name="binder" value="acrylic"/><float name="radius_um" value="0.03"/></phase></medium>'),
+    ball("0.5, 0.4, 0.1", 0.4, bsdf("dipole", '<spectrum name="sigma_a" value="400:0.06, 500:0.04, 600:0.02, 700:0.02"/>',
+                                    value("float", "sigma_s", 25)))
+).replace('name="max_depth" value="9"', 'name="max_depth" value="-1"')
+
 # Glass, plastic and metal on a dark table under a soft lamp, and a polarizer and a quarter-wave plate standing on it.
 STILL_LIFE = """<scene version="3.0.0">
 <integrator type="path"><integer name="max_depth" value="10"/></integrator>
@@ -128,7 +145,7 @@ STILL_LIFE = """<scene version="3.0.0">
     <bsdf type="roughplastic"><float name="diffuse_reflectance" value="0.12"/><float name="alpha" value="0.1"/></bsdf></shape>
 <shape type="rectangle">
     <transform name="to_world"><scale value="1.5"/><lookat origin="-3, 5, -1" target="0, 0, 0" up="0, 0, 1"/></transform>
-    <emitter type="area"><float name="radiance" value="8"/></emitter></shape>
+    <emitter type="area"><rgb name="radiance" value="8, 8, 8"/></emitter></shape>
 <emitter type="envmap"><string name="filename" value="{studio}"/><float name="scale" value="0.7"/></emitter>
 </scene>
 """

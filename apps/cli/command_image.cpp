@@ -20,7 +20,7 @@ namespace patina::cli {
 namespace {
 
 struct Options {
-    std::string operation, input, second, output, style = "dark", map = "grey", white_balance = "equal-energy";
+    std::string operation, input, second, output, style = "dark", map = "grey", white_balance = "auto";
     double wavelength = 0.0, angle = 0.0, retardance = -1.0, exposure = 0.0, range = 0.0;
     std::optional<int> component;
     io::SensorNoise sensor;
@@ -88,9 +88,10 @@ Product tonemap(const StokesImage& image, const Options& options) {
     tone.exposure_ev = options.exposure;
     tone.automatic_exposure = !options.manual_exposure;
     tone.tone_curve = !options.no_tone_curve;
-    tone.white_balance = options.white_balance == "none"         ? io::WhiteBalance::none
-                         : options.white_balance == "grey-world" ? io::WhiteBalance::grey_world
-                                                                 : io::WhiteBalance::equal_energy;
+    tone.white_balance = options.white_balance == "none"           ? io::WhiteBalance::none
+                         : options.white_balance == "grey-world"   ? io::WhiteBalance::grey_world
+                         : options.white_balance == "equal-energy" ? io::WhiteBalance::equal_energy
+                                                                   : io::WhiteBalance::automatic;
     return io::tone_map(image, tone);
 }
 
@@ -136,7 +137,10 @@ std::vector<std::string> operation_names() {
 void write(const Product& product, const std::string& output) {
     const bool exr = std::filesystem::path(output).extension() == ".exr";
     if (const StokesImage* image = std::get_if<StokesImage>(&product)) {
-        if (exr) return io::write_stokes_exr(output, *image);
+        // Without bins the colours are all that holds the polarization.
+        io::StokesExrOptions channels;
+        channels.stokes_rgb = image->bin_count() == 0;
+        if (exr) return io::write_stokes_exr(output, *image, channels);
         return io::write_png(output, io::tone_map(*image));
     }
     const Bitmap& picture = std::get<Bitmap>(product);
@@ -235,12 +239,12 @@ int run(const Options& options, Session& session) {
     if (options.operation == "info") return info(options, session);
     if (options.operation == "diff") return diff(options, session);
     if (options.operation == "error") return error(options, session);
+    if (options.operation == "demosaic") return demosaic(options, session);
     const auto found = std::find_if(operations().begin(), operations().end(),
                                     [&](const Operation& operation) { return operation.name == options.operation; });
     if (found == operations().end())
         throw Error(ErrorKind::usage, fmt::format("unknown operation \"{}\" {}", options.operation,
                                                   did_you_mean(options.operation, operation_names())));
-    if (options.operation == "demosaic") return demosaic(options, session);
     if (!options.second.empty())
         throw Error(ErrorKind::usage, fmt::format("patina image {} takes one picture", options.operation));
     if (options.output.empty())
@@ -310,8 +314,8 @@ void add_image(CLI::App& program, Session& session) {
         ->check(CLI::IsMember({"dark", "light", "full"}));
     command->add_option("--exposure-ev", options->exposure, "tonemap: exposure in stops, on top of the automatic one");
     command->add_flag("--manual-exposure", options->manual_exposure, "tonemap: no automatic exposure");
-    command->add_option("--white-balance", options->white_balance, "tonemap: equal-energy | grey-world | none")
-        ->check(CLI::IsMember({"equal-energy", "grey-world", "none"}));
+    command->add_option("--white-balance", options->white_balance, "tonemap: auto | equal-energy | grey-world | none")
+        ->check(CLI::IsMember({"auto", "equal-energy", "grey-world", "none"}));
     command->add_flag("--no-tone-curve", options->no_tone_curve, "tonemap: clip instead of rolling off");
     add_sensor_options(*command, *options);
     command->callback([options, &session] { session.chosen = [options, &session] { return run(*options, session); }; });

@@ -77,5 +77,18 @@ TEST_F(PaintCommand, RecipesCompareByColour) {
     EXPECT_EQ(patina("compare a.toml b.h5").exit_code, 2);
 }
 
+// Twice the white in a dyed binder halves K/S.
+TEST_F(PaintCommand, ComparesTintingStrengths) {
+    const std::string enamel = example("tinted_enamel.toml").string();
+    const Outcome outcome = patina("paint " + enamel + " --set layers.0.pigments.0.weight_percent=10 --against " +
+                                   enamel + " --quick --json --wavelengths 450,550 --streams 12");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const json strength = json::parse(outcome.out).at("tinting_strength");
+    EXPECT_EQ(strength.at("wavelength_nm"), 450.0);
+    // The extender scatters a part of it, and twice the weight of pigment is a little more than twice the volume.
+    EXPECT_NEAR(strength.at("at_maximum"), 0.5, 0.05);
+    EXPECT_EQ(patina("paint " + enamel + " --against nowhere.toml --quick", 60).exit_code, 3);
+}
+
 }  // namespace
 }  // namespace patina::test

@@ -10,7 +10,7 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-// Glass, a rough metal and a lamp, at a size at which a pass takes some hundredths of a second.
+// Glass, a rough metal, a mesh and a lamp, at a size at which a pass takes some hundredths of a second.
 const std::string scene = R"(<scene version="3.0.0">
 <default name="alpha" value="0.3"/>
 <integrator type="path"><integer name="max_depth" value="5"/></integrator>
@@ -19,6 +19,8 @@ const std::string scene = R"(<scene version="3.0.0">
 <shape type="sphere"><point name="center" value="-0.6,0,0.5"/><float name="radius" value="0.5"/><bsdf type="dielectric"/></shape>
 <shape type="sphere"><point name="center" value="0.6,0,0.5"/><float name="radius" value="0.5"/>
 <bsdf type="roughconductor"><float name="alpha" value="$alpha"/></bsdf></shape>
+<shape type="cube"><transform name="to_world"><scale value="0.3"/><rotate x="1" y="2" z="3" angle="40"/><translate y="-1.2" z="0.6"/></transform>
+<bsdf type="plastic"/></shape>
 <shape type="rectangle"><transform name="to_world"><scale value="4"/></transform><bsdf type="diffuse"/></shape>
 <shape type="rectangle"><transform name="to_world"><rotate x="1" angle="180"/><translate z="3"/></transform>
 <emitter type="area"><float name="radiance" value="5"/></emitter></shape>

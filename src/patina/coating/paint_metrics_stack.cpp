@@ -137,6 +137,8 @@ StackMemory::SetUp VariableStack::set_up(const JobControl& control) const {
         notes.insert(at_w.notes.begin(), at_w.notes.end());
         result.problems.push_back(std::move(at_w.problem));
     }
+    if (result.problems.front().has_rough_top())
+        notes.insert("rough top: d:8 excluded is without the reflection of a smooth surface; 45:0 has a part of it");
     result.notes.assign(notes.begin(), notes.end());
     return result;
 }
@@ -207,7 +209,11 @@ ReflectanceSpectra VariableStack::solve(const std::vector<rt::Problem>& problems
         if (!reflection.diagnostics.converged) converged_ = false;
         const Geometry geometry = measure(reflection);
         result.r45_0[w] = geometry.r45_0;
-        result.d8_excluded[w] = geometry.d8;
+        // A rough surface scatters its reflection: what it sends in all directions is taken for that of a smooth one.
+        rt::Problem smooth = problems[w];
+        smooth.top_roughness.reset();
+        const double scattered = problems[w].has_rough_top() ? rt::specular_surface(smooth, mu_8)(0, 0) : 0.0;
+        result.d8_excluded[w] = geometry.d8 - scattered;
         result.d8_included[w] = geometry.d8 + rt::specular_surface(problems[w], mu_8)(0, 0) +
                                 rt::specular_coherent(problems[w], mu_8)(0, 0);
         result.bihemispherical[w] = geometry.bihemispherical;

@@ -203,6 +203,20 @@ TEST(TintedBinder, ClearParticlesDiluteTheDye) {
     EXPECT_NEAR(layer.optical_thickness / (4 * pi * k * 10.0 / 0.5), 0.8, 0.2 * 10 * k);
 }
 
+// Particles from elsewhere keep their cross sections and take the place of the dye: tau = d (a + N (C - a V)).
+TEST(TintedBinder, ParticlesFromElsewhereReplaceTheDye) {
+    const std::filesystem::path folder = ::testing::TempDir();
+    std::ofstream(folder / "isotropic.csv") << "l,alpha1,alpha2,alpha3,alpha4,beta1,beta2\n0,1,0,0,1,0,0\n";
+    const std::string text =
+        "[[layers]]\nthickness_um = 10\nbinder = { n = 1.5, k = 0.01 }\n[[layers.pigments]]\nexpansion = "
+        "\"isotropic.csv\"\nextinction_um2 = 0.02\nscattering_um2 = 0.02\nparticle_volume_um3 = 0.01\n"
+        "number_density_per_um3 = 4\n";
+    const rt::Layer layer = optical_problem(parse_recipe(text, "r", folder), 500.0).problem.layers[0];
+    const double a = 4 * pi * 0.01 / 0.5;
+    EXPECT_NEAR(layer.optical_thickness, 10 * (a + 4 * (0.02 - a * 0.01)), 1e-12);
+    EXPECT_NEAR(layer.single_scattering_albedo, 4 * 0.02 / (a + 4 * (0.02 - a * 0.01)), 1e-12);
+}
+
 // Tinted enamel: absorption grows with the dye, the albedo stays a probability, and refraction is reported.
 TEST(TintedBinder, WithPigmentAbsorbsMoreTheMoreDye) {
     const std::string pigment = "[[layers.pigments]]\n" + titania + "volume_fraction = 0.04\n";

@@ -127,6 +127,20 @@ size = { distribution = "mono", radius_um = 0.1 }
     EXPECT_THAT(held.notes, ::testing::Contains(HasSubstr("held outside")));
 }
 
+TEST(Recipe, ReadsARoughTop) {
+    const std::string layer = "[[layers]]\nthickness_um = 10\nbinder = { n = 1.5 }\n";
+    const auto problem = [&](const std::string& top) {
+        return optical_problem(parse_recipe("[interface]\n" + top + layer, "r.toml", "."), 550.0).problem;
+    };
+    EXPECT_EQ(problem("type = \"rough\"\nalpha = 0.1\n").top_roughness->alpha, 0.1);
+    EXPECT_EQ(problem("type = \"rough\"\nalpha = 0.1\ndistribution = \"beckmann\"\n").top_roughness->distribution,
+              rt::FacetDistribution::beckmann);
+    EXPECT_FALSE(problem("type = \"smooth\"\n").top_roughness);
+    for (const char* wrong :
+         {"type = \"rough\"\n", "type = \"rough\"\nalpha = 0.01\n", "type = \"smooth\"\nalpha = 0.1\n"})
+        EXPECT_THROW(problem(wrong), Error) << wrong;
+}
+
 TEST(Recipe, ReadsARoughMetal) {
     const Recipe recipe = parse_recipe(
         "[[layers]]\nthickness_um = 10\nbinder = { n = 1.5 }\n"

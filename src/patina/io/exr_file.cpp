@@ -1,6 +1,7 @@
 #include "patina/io/exr_file.h"
 
 #include <algorithm>
+#include <fstream>
 
 #include <ImfChannelList.h>
 #include <ImfFloatVectorAttribute.h>
@@ -25,6 +26,7 @@ namespace {
 // the file is broken or a trap.
 constexpr double largest_expansion = 8192;
 constexpr double largest_pixel_bytes = 8e9;
+constexpr int largest_side = 65536;
 
 // Runs `work` and turns what OpenEXR throws into an Error of `kind`.
 template <class Work>
@@ -41,10 +43,36 @@ auto guarded(const fs::path& path, ErrorKind kind, const char* problem, const Wo
     }
 }
 
-void expect_regular_file(const fs::path& path) {
+// Walks the attributes of the (first) header, name\0 type\0 size data, up to the empty name. The library allocates what
+// they claim before it misses the bytes.
+void expect_honest_attributes(const fs::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    const std::uintmax_t file_bytes = fs::file_size(path);
+    constexpr std::streamoff magic_and_version = 8;
+    stream.seekg(magic_and_version);
+    std::string name, type;
+    while (std::getline(stream, name, '\0') && !name.empty() && std::getline(stream, type, '\0')) {
+        std::uint32_t size = 0;
+        stream.read(reinterpret_cast<char*>(&size), sizeof size);
+        if (!stream) return;
+        if (size > file_bytes)
+            throw input_error({path.string()}, "the header cannot be true",
+                              fmt::format("an attribute of {} bytes in a file of {}", size, file_bytes));
+        stream.seekg(size, std::ios::cur);
+    }
+}
+
+// A regular file without monstrous claims, which the library would try to fill before it found them wrong.
+void expect_openable(const fs::path& path) {
     std::error_code status_error;
     if (!fs::exists(path, status_error)) throw input_error({path.string()}, "file not found");
     if (!fs::is_regular_file(path, status_error)) throw input_error({path.string()}, "not a regular file");
+    static const bool limited = [] {
+        Imf::Header::setMaxImageSize(largest_side, largest_side);
+        return true;
+    }();
+    PATINA_EXPECT(limited);
+    expect_honest_attributes(path);
 }
 
 void expect_plausible(const fs::path& path, const Imf::Header& header) {
@@ -108,7 +136,7 @@ Imf::Slice slice(Imf::PixelType type, const void* data, std::size_t stride, cons
 }  // namespace
 
 ExrInfo read_exr_info(const fs::path& path) {
-    expect_regular_file(path);
+    expect_openable(path);
     return guarded(path, ErrorKind::input, "not a readable OpenEXR image", [&] {
         const Imf::InputFile file(path.c_str());
         expect_plausible(path, file.header());
@@ -118,7 +146,7 @@ ExrInfo read_exr_info(const fs::path& path) {
 }
 
 void read_exr_channels(const fs::path& path, const std::vector<ExrTarget>& targets) {
-    expect_regular_file(path);
+    expect_openable(path);
     guarded(path, ErrorKind::input, "the pixels cannot be read", [&] {
         Imf::InputFile file(path.c_str());
         expect_plausible(path, file.header());

@@ -209,6 +209,20 @@ TEST(ToneMap, AUniformSpectrumBecomesGreyWithEqualEnergyBalance) {
     EXPECT_NEAR(tone_map(image, {0.0, true, WhiteBalance::equal_energy, true}).data[1], roll_off(0.8), 1e-6);
 }
 
+// Grey under D65 and grey under a uniform lamp are both grey, each by what the picture says of its light.
+TEST(ToneMap, WhiteIsThatOfTheScenesLight) {
+    StokesImage image = image_of({{1, 0, 0, 0}});
+    const Eigen::Vector3d uniform = spectral::xyz_to_linear_srgb({1, 1, 1});
+    ToneOptions tone;
+    tone.automatic_exposure = false;
+    for (const bool daylight : {true, false}) {
+        image.metadata["white"] = daylight ? "D65" : "E";
+        for (int c = 0; c < 3; ++c) image.stokes_rgb(0)[c] = static_cast<float>(0.5 * (daylight ? 1.0 : uniform[c]));
+        const Bitmap picture = tone_map(image, tone);
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture.data[c], 0.5, 1e-6) << daylight;
+    }
+}
+
 TEST(ToneMap, EverythingFitsTheScreenAndKeepsItsLuminance) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> uniform(-0.2f, 5.0f);

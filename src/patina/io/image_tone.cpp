@@ -31,8 +31,15 @@ Eigen::Vector3d mean_color(const StokesImage& image) {
     return sum;
 }
 
+WhiteBalance balance_of_the_light(const StokesImage& image) {
+    const auto white = image.metadata.find("white");
+    const bool uniform = white == image.metadata.end() ? image.bin_count() > 0 : white->second == "E";
+    return uniform ? WhiteBalance::equal_energy : WhiteBalance::none;
+}
+
 // Linear sRGB to linear sRGB.
 Eigen::Matrix3d balance_matrix(const StokesImage& image, WhiteBalance balance) {
+    if (balance == WhiteBalance::automatic) balance = balance_of_the_light(image);
     if (balance == WhiteBalance::none) return Eigen::Matrix3d::Identity();
     Eigen::Vector3d white = Eigen::Vector3d::Ones();  // XYZ of a uniform spectrum
     if (balance == WhiteBalance::grey_world) {

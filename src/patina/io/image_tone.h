@@ -13,6 +13,8 @@
 namespace patina::io {
 
 enum class WhiteBalance {
+    automatic,     // as the scene was lit (metadata "white"): none for D65, equal_energy for E; without the metadata
+                   // equal_energy for pictures with bins, none for others
     none,          // as the file has it: a uniform spectrum is (1.205, 0.948, 0.909)
     equal_energy,  // a uniform spectrum is neutral
     grey_world     // the mean of the picture is neutral
@@ -21,7 +23,7 @@ enum class WhiteBalance {
 struct ToneOptions {
     double exposure_ev = 0.0;
     bool automatic_exposure = true;
-    WhiteBalance white_balance = WhiteBalance::equal_energy;
+    WhiteBalance white_balance = WhiteBalance::automatic;
     bool tone_curve = true;  // else what is above 1 is clipped by the writer
 };
 

@@ -168,9 +168,12 @@ render::Pictures render_scene(const RenderRequest& request, const JobControl& co
         render::render_parts(*scene, request.options, control, checkpoint_of(request, file, warnings));
     const bool stopped = pictures.whole.metadata.contains("stopped");
     if (!request.checkpoint.empty() && !stopped && !request.keep_checkpoint) file.remove();
+    const std::shared_ptr<const Properties> node = tree->only_child("integrator");
+    const std::string integrator = request.options.integrator.value_or(node ? node->type : "path");
     const auto add_provenance = [&](StokesImage& image) {
         image.metadata["command"] = request.command;
         image.metadata["scene"] = request.scene.string();
+        image.metadata["integrator"] = integrator;
         image.metadata["software"] = std::string("patina ") + PATINA_VERSION;
         for (size_t i = 0; i < warnings.size(); ++i) image.metadata[fmt::format("warning_{:02}", i)] = warnings[i];
     };
@@ -198,7 +201,8 @@ void check_picture_output(const fs::path& path) {
 
 std::vector<std::string> write_picture(const fs::path& path, const StokesImage& image, bool stokes_rgb, bool png) {
     io::StokesExrOptions options;
-    options.stokes_rgb = stokes_rgb;
+    const auto integrator = image.metadata.find("integrator");
+    options.stokes_rgb = stokes_rgb || (integrator != image.metadata.end() && integrator->second == "stokes");
     io::write_stokes_exr(path, image, options);
     std::vector<std::string> written{path.string()};
     if (png) {

@@ -41,7 +41,8 @@ void check_picture_output(const std::filesystem::path& path);
 // Where a part is written: OUT.name.exr beside OUT.exr. Throws Error(usage) for names that are no part of a file name.
 std::filesystem::path part_path(const std::filesystem::path& path, const std::string& name);
 
-// Writes the EXR and, if asked, a PNG of the same name; returns the names written.
+// Writes the EXR and, if asked, a PNG of the same name; returns the names written. Mitsuba's channels are written when
+// asked for, and of a scene whose integrator is `stokes`.
 std::vector<std::string> write_picture(const std::filesystem::path& path, const StokesImage& image, bool stokes_rgb,
                                        bool png);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
+#include <cmath>
 #include <mutex>
 
 #include <fmt/format.h>
@@ -22,6 +23,7 @@ constexpr int tile_size = 16;
 constexpr int block_size = 64;    // samples that an integrator may trace side by side
 constexpr int largest_pass = 16;  // samples per pixel between two looks at the clock and the stop sign
 
+constexpr int unlimited_samples = 1 << 30;
 constexpr double longest_silence_s = 2;  // without a look at the stop sign, if a sample per pixel takes no longer
 
 // Fewer samples than this tell too little of the spread to stop by it.
@@ -414,6 +416,54 @@ int take_up(Renderer& renderer, const RenderCheckpoint& checkpoint, int total) {
     return state.samples;
 }
 
+struct Outcome {
+    int samples = 0;
+    bool stopped = false;  // before what was asked for was reached
+};
+
+// Adds passes until the samples, the time or the noise asked for are reached, or someone asks to stop.
+Outcome add_passes(Renderer& renderer, const RenderOptions& options, int total, const JobControl& control,
+                   const RenderCheckpoint& checkpoint) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto elapsed = [&] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    const int begun = take_up(renderer, checkpoint, total);
+    Outcome outcome{begun, false};
+    int& done = outcome.samples;
+    bool finished = done == total;
+    double saved = 0;
+    while (!finished && !outcome.stopped) {
+        // Take a part of the pass when it is long, so that a stop is heard.
+        const double affordable = longest_silence_s * std::max(1, done - begun) / std::max(elapsed(), 1e-6);
+        const int pass = end_of_pass(done, total);
+        const int last = static_cast<int>(std::min<double>(pass, done + std::floor(std::max(affordable, 1.0))));
+        renderer.add_pass(done, last);
+        done = last;
+        control.report({"rendering", done, total == unlimited_samples ? 0 : total, fmt::format("{} spp", done)});
+
+        // Look at the clock, at the noise and at the stop sign.
+        finished = done == total || (options.time_limit_seconds && elapsed() >= *options.time_limit_seconds);
+        if (options.noise_target && done == pass && done >= fewest_for_noise)
+            finished |= renderer.relative_noise() <= *options.noise_target;
+        outcome.stopped = !finished && control.stop_requested();
+        const bool due = elapsed() >= saved + checkpoint.interval_seconds;
+        if (checkpoint.save && (finished ? checkpoint.save_finished : outcome.stopped || due)) {
+            checkpoint.save(renderer.state(done));
+            saved = elapsed();
+        }
+    }
+    return outcome;
+}
+
+void expect_finite(const Renderer& renderer, int samples_per_pixel) {
+    const auto count = renderer.non_finite().count();
+    const double samples = static_cast<double>(renderer.pixel_count()) * samples_per_pixel;
+    if (count > tolerated_non_finite * samples)
+        throw Error(ErrorKind::runtime, fmt::format("{} of {:.0f} samples are not finite, first at {}", count, samples,
+                                                    renderer.non_finite().text()));
+}
+
 }  // namespace
 
 Pictures render_parts(const Scene& scene, const RenderOptions& options, const JobControl& control,
@@ -421,54 +471,21 @@ Pictures render_parts(const Scene& scene, const RenderOptions& options, const Jo
     const int wanted = options.samples_per_pixel.value_or(scene.samples_per_pixel);
     const bool open_ended = !options.samples_per_pixel && (options.time_limit_seconds || options.noise_target);
     if (wanted < 1) throw Error(ErrorKind::usage, fmt::format("samples per pixel must be 1 or more, not {}", wanted));
-    const int total = open_ended ? (1 << 30) : wanted;
     Renderer renderer(scene, options, control);
+    const Outcome outcome = add_passes(renderer, options, open_ended ? unlimited_samples : wanted, control, checkpoint);
+    expect_finite(renderer, outcome.samples);
 
-    const auto start = std::chrono::steady_clock::now();
-    const auto elapsed = [&] {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
-    int done = take_up(renderer, checkpoint, total);
-    const int begun = done;
-    bool stopped = false;
-    double saved = 0;
-    while (done < total && !stopped) {
-        // Take a part of the pass when it is long, so that a stop is heard.
-        const double affordable = longest_silence_s * std::max(1, done - begun) / std::max(elapsed(), 1e-6);
-        const int pass = end_of_pass(done, total);
-        const int last = std::min<std::int64_t>(pass, done + std::int64_t(std::clamp(affordable, 1.0, 1e6)));
-        renderer.add_pass(done, last);
-        done = last;
-        control.report({"rendering", done, open_ended ? 0 : total, fmt::format("{} spp", done)});
-
-        // Look at the clock, at the noise and at the stop sign.
-        bool finished = done == total || (options.time_limit_seconds && elapsed() >= *options.time_limit_seconds);
-        if (options.noise_target && done == pass && done >= fewest_for_noise)
-            finished |= renderer.relative_noise() <= *options.noise_target;
-        stopped = !finished && control.stop_requested();
-        const bool due = elapsed() >= saved + checkpoint.interval_seconds;
-        if (checkpoint.save && (finished ? checkpoint.save_finished : stopped || due)) {
-            checkpoint.save(renderer.state(done));
-            saved = elapsed();
-        }
-        if (finished) break;
-    }
-
-    const auto non_finite = renderer.non_finite().count();
-    const double samples = static_cast<double>(renderer.pixel_count()) * done;
-    if (non_finite > tolerated_non_finite * samples)
-        throw Error(ErrorKind::runtime, fmt::format("{} of {:.0f} samples are not finite, first at {}", non_finite,
-                                                    samples, renderer.non_finite().text()));
     Pictures pictures = renderer.develop();
     std::map<std::string, std::string>& metadata = pictures.whole.metadata;
     metadata = scene.notes;
     metadata.merge(renderer.integrator_notes());
-    metadata["samples_per_pixel"] = fmt::format("{}", done);
+    metadata["samples_per_pixel"] = fmt::format("{}", outcome.samples);
     metadata["seed"] = fmt::format("{}", renderer.seed());
-    if (done > 1) metadata["relative_noise"] = fmt::format("{:.3g}", renderer.relative_noise());
+    if (outcome.samples > 1) metadata["relative_noise"] = fmt::format("{:.3g}", renderer.relative_noise());
+    const auto non_finite = renderer.non_finite().count();
     metadata["non_finite_samples"] =
         non_finite ? fmt::format("{} at {}", non_finite, renderer.non_finite().text()) : "0";
-    if (stopped) metadata["stopped"] = "yes";
+    if (outcome.stopped) metadata["stopped"] = "yes";
     for (auto& [name, part] : pictures.parts) part.metadata.insert(metadata.begin(), metadata.end());
     renderer.calibrate(pictures);
     note_transport_norm(pictures, options.neumann_terms, metadata);

@@ -5,6 +5,7 @@
 #include "patina/core/error.h"
 #include "patina/render/plugins.h"
 #include "patina/render/scene.h"
+#include "patina/render/scene_white.h"
 #include "patina/render/shape_builder.h"
 
 namespace patina::render {
@@ -40,6 +41,7 @@ class SceneBuilder {
         scene_->geometry.needs_uv = any_texture(root_);
         scene_->geometry.commit();
         build_camera();
+        scene_->notes["white"] = lit_by_daylight(root_) ? "D65" : "E";
         scene_->lights = Lights(std::move(emitters_), scene_->geometry, std::move(states_));
         return scene_;
     }

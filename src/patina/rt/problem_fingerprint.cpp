@@ -26,17 +26,13 @@ struct AddBase {
         fingerprint.add(base.refractive_index.imag());
         add_roughness(fingerprint, base.roughness);
     }
-    // Known by what it does with light of some directions.
+    // By what it does at a few cosines.
     void operator()(const SurfaceBase& base) const {
-        const Eigen::VectorXd mu = Eigen::VectorXd::LinSpaced(6, 0.1, 1.0);
-        for (int m = 0; m <= base.surface->order(); ++m) {
-            const Eigen::MatrixXd mode = base.surface->mode(m, mu);
-            for (const double value : mode.reshaped()) fingerprint.add(value);
-        }
-        for (const double cosine : mu) {
-            const optics::Mueller specular = base.surface->specular(cosine);
-            for (const double value : specular.reshaped()) fingerprint.add(value);
-        }
+        const Eigen::VectorXd mu = Eigen::VectorXd::LinSpaced(5, 0.1, 0.97);
+        for (int m = 0; m <= base.surface->order(); ++m)
+            for (const double value : base.surface->mode(m, mu).reshaped()) fingerprint.add(value);
+        for (const double cosine : mu)
+            for (const double value : base.surface->specular(cosine).reshaped()) fingerprint.add(value);
     }
 };
 
@@ -44,8 +40,8 @@ struct AddBase {
 
 void add_to(Fingerprint& fingerprint, const Problem& problem) {
     fingerprint.add(problem.refractive_index_above);
-    fingerprint.add(problem.has_rough_top() ? 1.0 : 0.0);
-    if (problem.has_rough_top()) add_roughness(fingerprint, problem.top_roughness);
+    fingerprint.add(problem.top_roughness ? "rough" : "smooth");
+    add_roughness(fingerprint, problem.top_roughness);
     fingerprint.add(static_cast<double>(problem.layers.size()));
     for (const Layer& layer : problem.layers) {
         fingerprint.add(layer.optical_thickness);

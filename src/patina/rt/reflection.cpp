@@ -102,7 +102,8 @@ void store_single(const SingleScattering& single, int m, const StackMedia& media
 Reflection solve_reflection(const Problem& problem, const SolveOptions& options, const LayerMethod& method) {
     validate(problem);
     const Truncation truncation = truncate(problem, options.streams);
-    const StackMedia media(truncation.scaled, quadrature_rays(problem, options.streams), options.streams);
+    const StackMedia media(truncation.scaled, quadrature_rays(problem, options.streams), options.streams,
+                           options.most_fourier_orders);
     const SingleScattering single(media, truncation, cut(media.problem, {}).slabs, options.scalar);
     const std::vector<int> order = ascending(media.above);
     Reflection result;

@@ -80,6 +80,7 @@ std::vector<Cell> cells_of(const std::vector<Ray>& rays, int points) {
 void smooth(std::vector<Mueller>& modes) {
     constexpr double negligible = 1e-3;
     const int last = static_cast<int>(modes.size()) - 1;
+    if (last == 0) return;
     const double tail = std::max(std::abs(modes[last](0, 0)), std::abs(modes[last - 1](0, 0)));
     if (!(tail > negligible * modes[0](0, 0))) return;
     const double width = std::sqrt(2.0 * std::log(tail / (negligible * modes[0](0, 0)))) / last;
@@ -186,13 +187,14 @@ Eigen::VectorXd mean_albedo(const Microfacets& facets, const std::vector<Cell>& 
 }  // namespace
 
 RoughInterface::RoughInterface(const RoughSurface& surface, const std::vector<Ray>& rays, const Medium& upper,
-                               const Medium& lower, int streams)
+                               const Medium& lower, int streams, int most_orders)
     : upper_(upper), lower_(lower) {
     const Microfacets facets(surface, upper.index, lower.index);
     // Lobes are about alpha wide in azimuth at middling angles. Those of Beckmann's facets fall off like exp(-(m
     // alpha)^2), those of GGX like exp(-m alpha).
     const double reach = surface.distribution == FacetDistribution::ggx ? 16.0 : 8.0;
     order_ = std::max(8, std::min(static_cast<int>(std::ceil(reach / surface.alpha)), 4 * streams));
+    if (most_orders == 1) order_ = 0;
     const Azimuths azimuths(order_);
 
     // A facet tilted by d turns refracted light in the thinner medium by about (n - 1) d: points for a cell to see

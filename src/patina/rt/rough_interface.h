@@ -23,8 +23,9 @@ namespace patina::rt {
 
 class RoughInterface {
   public:
+    // `most_orders` = 1 leaves out all but the azimuthal mean.
     RoughInterface(const RoughSurface& surface, const std::vector<Ray>& rays, const Medium& upper, const Medium& lower,
-                   int streams);
+                   int streams, int most_orders = 0);
 
     int order() const { return order_; }
     // Largest |c^2 - 1| on rays steeper than 60 degrees: how well the rays resolve the reflected lobes.

@@ -17,7 +17,8 @@
 namespace patina::rt {
 
 struct StackMedia {
-    StackMedia(const Problem& problem, std::vector<Ray> rays, int streams);
+    // `most_orders`: Fourier orders that will be asked for; 0: all.
+    StackMedia(const Problem& problem, std::vector<Ray> rays, int streams, int most_orders = 0);
     StackMedia(const StackMedia&) = delete;
     StackMedia& operator=(const StackMedia&) = delete;
 
