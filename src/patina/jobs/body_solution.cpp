@@ -22,8 +22,13 @@ std::vector<brdf::OnceScattered> closed_forms(const rt::Truncation& truncation) 
     return result;
 }
 
-bool is_sharp(const rt::Truncation& truncation, double tolerance) {
-    return std::ranges::any_of(truncation.forward, [&](double f) { return f > 0.1 * tolerance; });
+// The order beyond which a scattering function varies by less than `tolerance` of its mean.
+int effective_order(const optics::ExpansionCoefficients& x, double tolerance) {
+    double rest = 0.0;
+    int order = x.order();
+    for (; order > 0; --order)
+        if ((rest += std::abs(x.alpha1[order])) > tolerance) break;
+    return order;
 }
 
 }  // namespace
@@ -34,15 +39,18 @@ std::vector<double> specular_angles_deg() {
     return angles;
 }
 
-bool is_sharp(const rt::Solver& solver, const rt::Problem& problem, int streams, double tolerance) {
-    return !solver.is_statistical() && is_sharp(rt::truncate(problem, streams), tolerance);
+bool is_sharp(const rt::Solver& solver, const rt::Problem& problem, double tolerance) {
+    constexpr int smooth_order = 40;
+    return !solver.is_statistical() && std::ranges::any_of(problem.layers, [&](const rt::Layer& layer) {
+        return layer.optical_thickness > 0.0 && layer.single_scattering_albedo > 0.0 &&
+               effective_order(layer.expansion, tolerance) > smooth_order;
+    });
 }
 
 BodySolution solve_body(const rt::Solver& solver, const rt::Problem& problem, const rt::SolveOptions& options,
                         double tolerance) {
-    if (solver.is_statistical()) return {solver.reflection(problem, options), {}};
+    if (!is_sharp(solver, problem, tolerance)) return {solver.reflection(problem, options), {}};
     const rt::Truncation truncation = rt::truncate(problem, options.streams);
-    if (!is_sharp(truncation, tolerance)) return {solver.reflection(problem, options), {}};
     BodySolution result{solver.reflection(truncation.scaled, options), closed_forms(truncation)};
     rt::subtract_once_scattered(truncation, options.streams, result.reflection);
     rt::report_truncation(truncation, result.reflection.diagnostics);
@@ -51,9 +59,8 @@ BodySolution solve_body(const rt::Solver& solver, const rt::Problem& problem, co
 
 std::vector<brdf::OnceScattered> once_scattered_of(const rt::Solver& solver, const rt::Problem& problem, int streams,
                                                    double tolerance) {
-    if (solver.is_statistical()) return {};
-    const rt::Truncation truncation = rt::truncate(problem, streams);
-    return is_sharp(truncation, tolerance) ? closed_forms(truncation) : std::vector<brdf::OnceScattered>{};
+    if (!is_sharp(solver, problem, tolerance)) return {};
+    return closed_forms(rt::truncate(problem, streams));
 }
 
 }  // namespace patina::jobs

@@ -16,12 +16,13 @@ struct BodySolution {
 // Angles at which a table holds its specular part: half a degree apart from 0 to 90.
 std::vector<double> specular_angles_deg();
 
-// True when forward peaks truncated at that many streams hold enough light for `tolerance` to see the once scattered
-// light that comes with them. A statistical solver truncates nothing.
-bool is_sharp(const rt::Solver& solver, const rt::Problem& problem, int streams, double tolerance);
+// True when a layer's scattering function varies by more than `tolerance` of its mean beyond order 40, within some four
+// degrees: then light scattered once has features that nodes and Fourier modes do not follow. It does not depend on the
+// number of streams, so that solutions of different numbers differ by what streams do. Never for a statistical solver.
+bool is_sharp(const rt::Solver& solver, const rt::Problem& problem, double tolerance);
 
 // `tolerance` is the table's. Where the problem is sharp, the truncated problem is solved, its once scattered light
-// taken away, and that of the whole matrix kept apart (rt/once_scattered.h).
+// taken away, and that of the whole matrices kept apart (rt/once_scattered.h).
 BodySolution solve_body(const rt::Solver& solver, const rt::Problem& problem, const rt::SolveOptions& options,
                         double tolerance);
 

@@ -24,6 +24,10 @@ ExpansionCoefficients kept(const Layer& layer) {
     return result;
 }
 
+bool scatters(const Layer& layer) {
+    return layer.optical_thickness > 0.0 && layer.single_scattering_albedo > 0.0;
+}
+
 }  // namespace
 
 std::vector<OnceScatteredLayer> once_scattered(const Truncation& truncation, const std::vector<double>& mu) {
@@ -31,12 +35,15 @@ std::vector<OnceScatteredLayer> once_scattered(const Truncation& truncation, con
     const double above = problem.refractive_index_above;
     std::vector<OnceScatteredLayer> result;
     for (std::size_t k = 0; k < problem.layers.size(); ++k) {
-        if (truncation.forward[k] == 0.0) continue;
         const Layer& layer = problem.layers[k];
+        if (!scatters(layer)) continue;
         OnceScatteredLayer once{layer.refractive_index / above, layer.optical_thickness, truncation.lacking[k], {}, {}};
         const ExpansionCoefficients rest = kept(layer);
-        for (const auto list : all_coefficients)
-            for (std::size_t l = 0; l < (rest.*list).size(); ++l) (once.scattering.*list)[l] += (rest.*list)[l];
+        for (const auto list : all_coefficients) {
+            std::vector<double>& whole = once.scattering.*list;
+            whole.resize(std::max<std::size_t>({whole.size(), (rest.*list).size(), 3}), 0.0);
+            for (std::size_t l = 0; l < (rest.*list).size(); ++l) whole[l] += (rest.*list)[l];
+        }
         for (const double cosine : mu) {
             const RayPath path(problem, cut(problem, {}).slabs, {.cosine = cosine, .index = above}, false);
             const RayLight light = path.unscattered();
@@ -52,11 +59,11 @@ void subtract_once_scattered(const Truncation& truncation, int streams, Reflecti
     Truncation single{truncation.scaled, truncation.forward, {}, 0};
     single.lacking.resize(truncation.forward.size());
     for (std::size_t k = 0; k < truncation.forward.size(); ++k) {
-        if (truncation.forward[k] == 0.0) continue;
+        if (!scatters(truncation.scaled.layers[k])) continue;
         single.lacking[k] = kept(truncation.scaled.layers[k]);
         single.order = std::max(single.order, single.lacking[k].order());
     }
-    if (single.order == 0) return;
+    single.order = std::max(single.order, 1);
     const StackMedia media(single.scaled, quadrature_rays(single.scaled, streams), streams);
     const SingleScattering scattering(media, single, cut(single.scaled, {}).slabs, false);
     const Medium& medium = media.above;

@@ -1,5 +1,5 @@
 #pragma once
-// Light scattered once in the layers whose forward peak was truncated, for whoever wants it in closed form.
+// Light scattered once, for whoever wants it in closed form.
 //
 // The single scattering of large particles has features of a degree (glory, rainbow) that neither the nodes nor the
 // Fourier modes of a table follow, while light scattered twice or more is smooth. The modes of the truncated problem
@@ -13,7 +13,7 @@
 
 namespace patina::rt {
 
-// One truncated layer of the scaled stack. Light that comes down on the stack as a unit Stokes vector goes down under
+// One scattering layer of the scaled stack. Light that comes down on the stack as a unit Stokes vector goes down under
 // the layer's top as `down` and up above its bottom as Delta^-1 `up`, Delta = diag(1,1,-1,-1), without having been
 // scattered; in radiant flux through horizontal planes.
 struct OnceScatteredLayer {
@@ -26,8 +26,8 @@ struct OnceScatteredLayer {
 // `mu`: cosines above the stack, (0, 1].
 std::vector<OnceScatteredLayer> once_scattered(const Truncation& truncation, const std::vector<double>& mu);
 
-// Takes the once scattered light of the truncated layers, with what their matrix kept, from a reflection of
-// truncation.scaled with that many streams.
+// Takes light scattered once, with what the truncated matrices kept, from a reflection of truncation.scaled with that
+// many streams.
 void subtract_once_scattered(const Truncation& truncation, int streams, Reflection& reflection);
 
 }  // namespace patina::rt

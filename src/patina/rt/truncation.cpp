@@ -17,8 +17,9 @@ constexpr std::vector<double> ExpansionCoefficients::*all_coefficients[] = {
 
 // The share f of light that a peak takes when the expansion is cut to `terms`.
 double forward_fraction(const ExpansionCoefficients& x, int terms) {
-    // A negative coefficient is no peak: the expansion is then cut without one.
-    return std::clamp(x.alpha1[terms] / (2.0 * terms + 1.0), 0.0, 1.0 - 1e-9);
+    // A negative share is a hole, as packing digs into the forward peak of coarse particles: light that is then missing
+    // from it. The same algebra holds.
+    return std::clamp(x.alpha1[terms] / (2.0 * terms + 1.0), -0.5, 1.0 - 1e-9);
 }
 
 ExpansionCoefficients without_peak(const ExpansionCoefficients& x, double f, int terms) {
