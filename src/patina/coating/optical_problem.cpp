@@ -39,6 +39,11 @@ class ProblemBuilder {
             recipe_.has_interface ? 1.0 : result_.problem.layers.front().refractive_index;
         result_.problem.top_roughness = recipe_.has_interface ? recipe_.interface_roughness : std::nullopt;
         result_.problem.base = std::visit([&](const auto& base) { return base_of(base); }, recipe_.base);
+        const auto* metal = std::get_if<rt::MetalBase>(&result_.problem.base);
+        if (result_.problem.has_rough_top() || (metal && metal->roughness))
+            result_.notes.emplace_back(
+                "rough surface: within some degrees of grazing its lobe is smoothed in azimuth, which an error bound "
+                "does not include");
         return std::move(result_);
     }
 

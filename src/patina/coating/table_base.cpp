@@ -40,7 +40,7 @@ brdf::MuellerTable from_half_angles(const brdf::HalfAngleTable& measured) {
         brdf::tabulate([&](double wavelength_nm, double mu_o, double mu_i,
                            double phi) { return measured.evaluate_meridian(wavelength_nm, mu_o, mu_i, phi); },
                        {measured.wavelengths_nm, nodes, orders});
-    table.provenance.notes[medium_index_note] = "1";
+    table.provenance.notes.emplace(medium_index_note, "1");
     return table;
 }
 
