@@ -249,14 +249,18 @@ void PaintTable::interpolate(const Place& at, const WavelengthPlace& wavelength,
         const float high = weight * wavelength.weight, low = weight - high;
         const std::uint16_t* place = &body_[node(std::min(a, b), std::max(a, b), at_phi)] + 64 * wavelength.lower;
         if (count == 1 && a > b) {
-            reversed[0] += low * load_first_row(place) + high * load_first_row(place + next);
+            reversed[0] += low * load_first_row(place);
+            reversed[0] += high * load_first_row(place + next);
             continue;
         }
         StokesPacket* target = a > b ? reversed : sums;
-        for (int column = 0; column < count; ++column)
-            target[column] += low * load_halves(place + 16 * column) + high * load_halves(place + next + 16 * column);
+        for (int column = 0; column < count; ++column) {
+            target[column] += low * load_halves(place + 16 * column);
+            target[column] += high * load_halves(place + next + 16 * column);
+        }
     }
-    // Both ways add up in the same order, so that the first column alone has the bits it has in the whole.
+    // Both ways add up in the same order, one product a statement so that each is contracted alike: the first column
+    // alone has the bits it has in the whole.
     if constexpr (count == 1) {
         sums[0] += reversed[0] * other_way;
     } else if (o.lower + 1 > i.lower) {
