@@ -7,10 +7,9 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include <unistd.h>
-
 #include "patina/coating/optical_problem.h"
 #include "patina/core/files.h"
+#include "patina/core/scratch_folder_for_tests.h"
 #include "patina/rt/solver.h"
 
 namespace patina::cross {
@@ -50,13 +49,11 @@ double scatterings(const rt::Problem& problem) {
 
 class RandomRecipes : public ::testing::Test {
   protected:
-    RandomRecipes() : folder_(fs::temp_directory_path() / ("patina_random_recipes_" + std::to_string(::getpid()))) {
-        fs::create_directories(folder_);
+    RandomRecipes() {
         write_text_file(folder_ / "rayleigh.csv",
                         "l,alpha1,alpha2,alpha3,alpha4,beta1,beta2\n0,1,0,0,0,0,0\n1,0,0,0,1.5,0,0\n"
                         "2,0.5,3,0,0,1.2247448713915890,0\n");
     }
-    ~RandomRecipes() override { fs::remove_all(folder_); }
 
     rt::Problem problem(std::uint64_t seed) {
         const std::vector<std::string> expansions{
@@ -70,7 +67,7 @@ class RandomRecipes : public ::testing::Test {
             rt::solver_named(solver).field(problem, request, {.streams = streams, .fourier_tolerance = 1e-9}).upward);
     }
 
-    const fs::path folder_;
+    const ScratchFolder folder_;
     std::string text_;
 };
 

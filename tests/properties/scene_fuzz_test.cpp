@@ -5,9 +5,9 @@
 #include <random>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "patina/core/error.h"
+#include "patina/core/scratch_folder_for_tests.h"
 #include "patina/io/mitsuba_xml.h"
 #include "patina/jobs/render.h"
 
@@ -151,11 +151,6 @@ const char* const bodies[] = {
 
 class SceneFuzz : public testing::Test {
   protected:
-    SceneFuzz() : folder_(fs::temp_directory_path() / ("patina_scene_fuzz_" + std::to_string(::getpid()))) {
-        fs::create_directories(folder_);
-    }
-    ~SceneFuzz() override { fs::remove_all(folder_); }
-
     static constexpr const char* obj =
         "v -1 0 0\nv 1 0 0\nv 0 1 1\nv 0 -1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n"
         "f 1/1/1 2/2/1 3/3/1\nf 1/1/1 4/3/1 2/2/1\n";
@@ -192,7 +187,7 @@ class SceneFuzz : public testing::Test {
         return text;
     }
 
-    fs::path folder_;
+    ScratchFolder folder_;
     std::mt19937 random_{20260};
 
   private:

@@ -5,6 +5,7 @@
 #include "patina/coating/optical_problem.h"
 #include "patina/coating/recipe.h"
 #include "patina/core/constants.h"
+#include "patina/core/scratch_folder_for_tests.h"
 #include "patina/optics/scattering/expansion.h"
 #include "patina/optics/scattering/mixture.h"
 
@@ -67,7 +68,7 @@ TEST(PigmentConcentration, SaysWhatIsWrong) {
 
 // Spheres brought as a table of angles scatter like the spheres.
 TEST(ExternalPigment, ReproducesTheSpheresItDescribes) {
-    const std::filesystem::path folder = ::testing::TempDir();
+    const ScratchFolder folder;
     std::ofstream matrix(folder / "spheres_matrix.csv"), cross(folder / "spheres_cross.csv");
     matrix.precision(12), cross.precision(12);
     matrix << "wavelength_nm,angle_deg,F11,F12,F22,F33,F34,F44\n";
@@ -112,7 +113,7 @@ TEST(ExternalPigment, ReproducesTheSpheresItDescribes) {
 }
 
 TEST(ExternalPigment, SaysWhatIsWrong) {
-    const std::filesystem::path folder = ::testing::TempDir();
+    const ScratchFolder folder;
     std::ofstream(folder / "isotropic.csv") << "l,alpha1,alpha2,alpha3,alpha4,beta1,beta2\n0,1,0,0,1,0,0\n";
     const auto of = [&](const std::string& pigment) -> std::string {
         try {
@@ -138,7 +139,7 @@ TEST(ExternalPigment, SaysWhatIsWrong) {
 
 // An optical layer takes a matrix against angle as it takes coefficients: Rayleigh's.
 TEST(OpticalLayerMatrix, OfRayleigh) {
-    const std::filesystem::path folder = ::testing::TempDir();
+    const ScratchFolder folder;
     std::ofstream file(folder / "rayleigh.csv");
     file.precision(12);
     file << "# Rayleigh\nangle_deg, F11, F12, F22, F33, F34, F44\n";
@@ -205,7 +206,7 @@ TEST(TintedBinder, ClearParticlesDiluteTheDye) {
 
 // Particles from elsewhere keep their cross sections and take the place of the dye: tau = d (a + N (C - a V)).
 TEST(TintedBinder, ParticlesFromElsewhereReplaceTheDye) {
-    const std::filesystem::path folder = ::testing::TempDir();
+    const ScratchFolder folder;
     std::ofstream(folder / "isotropic.csv") << "l,alpha1,alpha2,alpha3,alpha4,beta1,beta2\n0,1,0,0,1,0,0\n";
     const std::string text =
         "[[layers]]\nthickness_um = 10\nbinder = { n = 1.5, k = 0.01 }\n[[layers.pigments]]\nexpansion = "

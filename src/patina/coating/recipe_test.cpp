@@ -4,6 +4,7 @@
 
 #include "patina/coating/optical_problem.h"
 #include "patina/core/constants.h"
+#include "patina/core/scratch_folder_for_tests.h"
 #include "patina/optics/scattering/particle_ensemble.h"
 
 namespace patina::coating {
@@ -168,7 +169,7 @@ TEST(Recipe, RoughSurfacesThatCannotBeAreErrors) {
 
 // A coating on another recipe is the coating with all the layers.
 TEST(Recipe, LiesOnAnotherRecipe) {
-    const std::filesystem::path folder = ::testing::TempDir();
+    const ScratchFolder folder;
     std::ofstream(folder / "below.toml") << two_layers;
     std::ofstream(folder / "self.toml")
         << "[[layers]]\nthickness_um = 10\nbinder = { n = 1.5 }\n[base]\ntype = \"recipe\"\nrecipe = \"self.toml\"\n";

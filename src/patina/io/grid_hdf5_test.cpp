@@ -3,16 +3,16 @@
 #include <cmath>
 #include <limits>
 
-#include <unistd.h>
-
 #include "patina/core/error.h"
+#include "patina/core/scratch_folder_for_tests.h"
 #include "patina/io/table_hdf5_file.h"
 
 namespace patina::io {
 namespace {
 
 TEST(GridHdf5, KeepsAxesValuesUnitsAndWhatIsUndefined) {
-    const auto path = std::filesystem::temp_directory_path() / ("patina_grid_" + std::to_string(::getpid()) + ".h5");
+    const ScratchFolder folder;
+    const std::filesystem::path path = folder / "grid.h5";
     const double none = std::numeric_limits<double>::quiet_NaN();
     write_grid_hdf5(path, {{"layers.0.thickness_um", "um", {1, 2}}, {"wavelength_nm", "nm", {400, 500, 600}}},
                     {{"hiding_power_m2_per_l", "m2/l", "spreading rate", {0}, {none, 7.5}},
@@ -29,7 +29,6 @@ TEST(GridHdf5, KeepsAxesValuesUnitsAndWhatIsUndefined) {
     EXPECT_TRUE(std::isnan(rate.values[0]));
     EXPECT_EQ(rate.values[1], 7.5);
     EXPECT_TRUE(reader.has_attribute("/reflectance", "DIMENSION_LIST"));
-    std::filesystem::remove(path);
 }
 
 TEST(GridHdf5, UnwritableFolderIsARuntimeError) {

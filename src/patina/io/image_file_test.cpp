@@ -11,10 +11,10 @@
 
 #include "patina/core/error.h"
 #include "patina/core/files.h"
+#include "patina/core/scratch_folder_for_tests.h"
 #include "patina/io/bitmap_file.h"
 #include "patina/io/exr_file.h"
 #include "patina/io/png_file.h"
-#include "patina/io/scratch_folder_for_tests.h"
 #include "patina/io/stokes_exr.h"
 #include "patina/spectral/colorimetry.h"
 

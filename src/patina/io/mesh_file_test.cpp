@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "patina/io/scratch_folder_for_tests.h"
+#include "patina/core/scratch_folder_for_tests.h"
 
 namespace patina::io {
 namespace {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "patina/core/files.h"
-#include "patina/io/scratch_folder_for_tests.h"
+#include "patina/core/scratch_folder_for_tests.h"
 
 namespace patina::io {
 namespace {

@@ -10,6 +10,7 @@
 #include "patina/brdf/tabulate.h"
 #include "patina/core/constants.h"
 #include "patina/core/files.h"
+#include "patina/core/scratch_folder_for_tests.h"
 #include "patina/io/table_csv.h"
 #include "patina/io/table_merl.h"
 #include "patina/io/table_pbsdf.h"
@@ -24,13 +25,6 @@ using testing::HasSubstr;
 
 class TableExport : public testing::Test {
   protected:
-    void SetUp() override {
-        folder_ =
-            fs::temp_directory_path() / fmt::format("patina_export_{}_{}", ::getpid(),
-                                                    testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
     fs::path file(const std::string& name) const { return folder_ / name; }
 
     template <class Read>
@@ -45,7 +39,7 @@ class TableExport : public testing::Test {
         }
     }
 
-    fs::path folder_;
+    ScratchFolder folder_;
 };
 
 MuellerTable rayleigh_table() {

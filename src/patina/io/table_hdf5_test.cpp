@@ -13,6 +13,7 @@
 
 #include "patina/brdf/tabulate.h"
 #include "patina/core/files.h"
+#include "patina/core/scratch_folder_for_tests.h"
 #include "patina/optics/fresnel.h"
 
 namespace patina::io {
@@ -24,13 +25,6 @@ using testing::HasSubstr;
 
 class TableHdf5 : public testing::Test {
   protected:
-    void SetUp() override {
-        folder_ =
-            fs::temp_directory_path() / fmt::format("patina_table_{}_{}", ::getpid(),
-                                                    testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
     fs::path file(const std::string& name) const { return folder_ / name; }
 
     // Runs Python with h5py on a script; its last word is the exit code.
@@ -39,7 +33,7 @@ class TableHdf5 : public testing::Test {
         return std::system(fmt::format("/usr/bin/python3 '{}'", file("check.py").string()).c_str());
     }
 
-    fs::path folder_;
+    ScratchFolder folder_;
 };
 
 MuellerTable sample_table() {

@@ -5,10 +5,10 @@
 #include <limits>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "patina/core/error.h"
 #include "patina/core/files.h"
+#include "patina/core/scratch_folder_for_tests.h"
 #include "patina/jobs/paint.h"
 #include "patina/jobs/sweep_point.h"
 
@@ -30,11 +30,6 @@ size = { distribution = "mono", radius_um = 0.1 }
 
 class SweepFolder : public ::testing::Test {
   protected:
-    SweepFolder() : folder_(fs::temp_directory_path() / ("patina_sweep_test_" + std::to_string(::getpid()))) {
-        fs::create_directories(folder_);
-    }
-    ~SweepFolder() override { fs::remove_all(folder_); }
-
     SweepRequest request(const std::string& recipe = recipe_text) const {
         write_text_file(folder_ / "paint.toml", recipe);
         SweepRequest request;
@@ -47,7 +42,7 @@ class SweepFolder : public ::testing::Test {
         return request;
     }
 
-    const fs::path folder_;
+    const ScratchFolder folder_;
 };
 
 TEST(SweepAxis, IsEvenInTheValueOrItsLogarithm) {

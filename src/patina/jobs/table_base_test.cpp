@@ -8,6 +8,7 @@
 #include "patina/coating/optical_problem.h"
 #include "patina/core/constants.h"
 #include "patina/core/error.h"
+#include "patina/core/scratch_folder_for_tests.h"
 #include "patina/io/table_hdf5.h"
 #include "patina/jobs/solve.h"
 #include "patina/rt/solver.h"
@@ -19,13 +20,11 @@ namespace fs = std::filesystem;
 
 class TableBase : public testing::Test {
   protected:
-    TableBase() : folder_(fs::temp_directory_path() / "patina_table_base_test") {
-        fs::create_directories(folder_);
+    TableBase() {
         std::ofstream(folder_ / "law.csv") << "l,alpha1,alpha2,alpha3,alpha4,beta1,beta2\n"
                                               "0,1,0,0,0,0,0\n1,1.2,0,0,0.9,0,0\n2,0.9,3.1,0.4,0.6,0.3,0.2\n"
                                               "3,0.3,0.9,0.3,0.2,0.1,0.1\n";
     }
-    ~TableBase() override { fs::remove_all(folder_); }
 
     static std::string layer(double thickness) {
         return "[[layers]]\noptical_thickness = " + std::to_string(thickness) +
@@ -61,7 +60,7 @@ class TableBase : public testing::Test {
         return sum;
     }
 
-    fs::path folder_;
+    ScratchFolder folder_;
 };
 
 const std::string metal = "[base]\ntype = \"metal\"\nmaterial = { n = 1.0, k = 6.5 }\n";

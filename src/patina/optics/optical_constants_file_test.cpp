@@ -4,6 +4,7 @@
 #include <random>
 
 #include "patina/core/error.h"
+#include "patina/core/scratch_folder_for_tests.h"
 #include "patina/optics/dispersion_formula.h"
 #include "patina/optics/materials.h"
 
@@ -226,8 +227,7 @@ TEST(OpticalConstantsFile, SurvivesDamage) {
 }
 
 TEST(OpticalConstantsFile, IsFoundBesideTheRecipeByItsExtension) {
-    const std::filesystem::path folder = std::filesystem::temp_directory_path() / "patina_optical_constants_test";
-    std::filesystem::create_directories(folder);
+    const ScratchFolder folder;
     std::ofstream(folder / "mine.yml") << good_yaml;
     std::ofstream(folder / "mine.csv") << "wavelength_nm,n\n400,1.4\n700,1.4\n";
     EXPECT_EQ(material("mine.yml", folder).name(), "mine");
@@ -237,7 +237,6 @@ TEST(OpticalConstantsFile, IsFoundBesideTheRecipeByItsExtension) {
     EXPECT_THROW(material("absent.yml", folder), Error);
     EXPECT_THROW(read_optical_constants(folder / "mine.txt"), Error);
     EXPECT_THROW(read_optical_constants(folder), Error);
-    std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -9,13 +9,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-namespace patina::io {
+namespace patina {
 
 class ScratchFolder {
   public:
     ScratchFolder() {
         static std::atomic<int> count{0};
-        path_ = std::filesystem::temp_directory_path() / fmt::format("patina_io_{}_{}", getpid(), count++);
+        path_ = std::filesystem::temp_directory_path() / fmt::format("patina_test_{}_{}", getpid(), count++);
         std::filesystem::create_directories(path_);
     }
     ~ScratchFolder() {
@@ -25,6 +25,8 @@ class ScratchFolder {
     ScratchFolder(const ScratchFolder&) = delete;
     ScratchFolder& operator=(const ScratchFolder&) = delete;
 
+    const std::filesystem::path& path() const { return path_; }
+    operator const std::filesystem::path&() const { return path_; }
     std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
     std::filesystem::path write(const std::string& name, const std::string& text) const {
         std::filesystem::create_directories((path_ / name).parent_path());
@@ -36,4 +38,4 @@ class ScratchFolder {
     std::filesystem::path path_;
 };
 
-}  // namespace patina::io
+}  // namespace patina
