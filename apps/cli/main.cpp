@@ -46,7 +46,7 @@ void add_global_options(CLI::App& program, cli::Session& session) {
     program.set_version_flag("--version", std::string("patina ") + PATINA_VERSION);
 }
 
-// "unknown command "slove" did you mean "solve"?" instead of CLI11's list of surplus arguments.
+// "unknown command "slove"; did you mean "solve"?" instead of CLI11's list of surplus arguments.
 std::string explain(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv) {
     std::vector<std::string> names;
     for (const CLI::App* command : program.get_subcommands({})) names.push_back(command->get_name());
@@ -54,7 +54,7 @@ std::string explain(const CLI::App& program, const CLI::ParseError& error, int a
         const std::string word = argv[i];
         if (word.starts_with("-")) continue;
         if (std::find(names.begin(), names.end(), word) != names.end()) break;
-        return "unknown command \"" + word + "\" " + did_you_mean(word, names);
+        return "unknown command \"" + word + "\"; " + did_you_mean(word, names);
     }
     return error.what();
 }

@@ -74,7 +74,7 @@ class ProblemBuilder {
             throw Error(ErrorKind::input,
                         fmt::format("layer of {}: more light would leave than enters at {:g} nm (the particles scatter "
                                     "{:g} and the layer extinguishes {:g} per um; with k = {:g} and particles this "
-                                    "large the theory of an absorbing binder does not hold) use a smaller k",
+                                    "large the theory of an absorbing binder does not hold); use a smaller k",
                                     layer.binder.name(), wavelength_nm_, particles.scattering_per_um, extinction_per_um,
                                     host.imag()));
         const double albedo = extinction_per_um > 0.0 ? particles.scattering_per_um / extinction_per_um : 0.0;

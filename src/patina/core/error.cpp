@@ -44,7 +44,7 @@ std::string compose(std::string_view where, std::string_view problem, std::strin
     if (!where.empty()) message += fmt::format("{}: ", where);
     message += shortened(problem);
     if (!why.empty()) message += fmt::format(" ({})", shortened(why));
-    if (!suggestion.empty()) message += fmt::format(" {}", shortened(suggestion));
+    if (!suggestion.empty()) message += fmt::format("; {}", shortened(suggestion));
     return message;
 }
 

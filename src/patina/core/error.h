@@ -1,7 +1,7 @@
 #pragma once
 // The one exception type for everything a user can get wrong or a machine can refuse.
 //
-// A message reads `where: problem (why) suggestion`. It is caught at the walls of the program only (command line, and
+// A message reads `where: problem (why); suggestion`. It is caught at the walls of the program only (command line, and
 // later HTTP, Python, MPI). Mistakes of the programmer are contracts (core/contract.h), not errors.
 
 #include <stdexcept>
@@ -40,7 +40,7 @@ class Error : public std::runtime_error {
     ErrorKind kind_;
 };
 
-// `where: problem (why) suggestion`; empty parts are left out; a SourceLocation{} has no place.
+// `where: problem (why); suggestion`; empty parts are left out; a SourceLocation{} has no place.
 Error input_error(const SourceLocation& where, std::string_view problem, std::string_view why = {},
                   std::string_view suggestion = {});
 

@@ -19,8 +19,7 @@ using validation::Benchmark;
 std::string reason_to_skip(const Benchmark& benchmark, const rt::Solver& solver) {
     for (const rt::Problem& problem : benchmark.problems)
         if (std::string reason = solver.unsupported(problem); !reason.empty()) return reason;
-    if (solver.is_statistical() && !benchmark.for_statistical_solvers)
-        return "its statistical error would exceed what the benchmark resolves";
+    if (solver.is_statistical()) return benchmark.too_long_for_random_walks;
     return {};
 }
 
@@ -72,7 +71,7 @@ ValidationReport validate(const ValidateRequest& request, const JobControl& cont
             control.report({"validating", ++done, total, benchmark.name});
         }
     }
-    for (const validation::PolarizationRow& row : validation::cost_of_ignoring_polarization(*solvers.front()))
+    for (const validation::PolarizationRow& row : validation::cost_of_ignoring_polarization(*rt::solvers().front()))
         report.cost_of_ignoring_polarization.push_back(
             {row.zenith_deg, row.phi_deg, row.published, row.vector, row.scalar});
     return report;

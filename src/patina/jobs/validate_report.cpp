@@ -27,11 +27,11 @@ std::string escaped(const std::string& text) {
 }
 
 // "I 2.1e-06, Q 3.0e-07, ..." of the components that were compared.
-std::string largest_errors(const ValidatedCase& one) {
+std::string largest_errors(const ValidatedCase& one, const char* separator) {
     std::string text;
     for (int c = 0; c < 4; ++c)
         if (one.largest[c] >= 0.0)
-            text += fmt::format("{}{} {:.1e}", text.empty() ? "" : ", ", one.components[c], one.largest[c]);
+            text += fmt::format("{}{} {:.1e}", text.empty() ? "" : separator, one.components[c], one.largest[c]);
     return text;
 }
 
@@ -59,8 +59,8 @@ Summary summary_of(const ValidationReport& report) {
 std::string sentence(const ValidationReport& report) {
     const Summary summary = summary_of(report);
     return fmt::format(
-        "{} runs, {} published or exactly known values compared, {} failures; {} runs left out because the solver "
-        "cannot do them.",
+        "{} runs, {} published or exactly known values compared, {} failures; {} runs left out, each "
+        "with its reason. A statistical solver is allowed five of its standard errors more.",
         summary.cases, summary.values, report.failures(), summary.skipped);
 }
 
@@ -80,7 +80,7 @@ p.lead { color: var(--dim); margin-top: 0; max-width: 50rem; }
 table { border-collapse: collapse; width: 100%; font-size: 13.5px; }
 th, td { text-align: left; padding: 0.55rem 0.8rem; border-bottom: 1px solid var(--line); vertical-align: top; }
 tr:last-child td { border-bottom: 0; } thead th { background: var(--soft); font-weight: 600; white-space: nowrap; }
-td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; } td.e, td.e + td { font-variant-numeric: tabular-nums; min-width: 13rem; }
+td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; } td.e { font-variant-numeric: tabular-nums; white-space: nowrap; } td.e + td { min-width: 13rem; }
 td:first-child:not(.n) { min-width: 18rem; }
 small { color: var(--dim); display: block; } .pass { color: var(--good); font-weight: 600; } .fail { color: var(--bad); font-weight: 700; } .skip { color: var(--dim); }
 .bar { display: inline-block; width: 5rem; height: 0.45rem; border-radius: 4px; background: var(--line); overflow: hidden; } .bar i { display: block; height: 100%; background: var(--good); }
@@ -98,7 +98,7 @@ std::string html_row(const ValidatedCase& one) {
         "<tr>{}<td class=\"n\">{}</td><td class=\"e\">{}</td><td>{}</td><td class=\"n\"><span class=\"bar\"><i "
         "style=\"width:{:.0f}%{}\"></i></span> {:.2g}"
         "</td><td><span class=\"{}\">{}</span><small>{:.2f} s</small></td></tr>\n",
-        name, one.count, escaped(largest_errors(one)), escaped(one.tolerance), filled,
+        name, one.count, largest_errors(one, "<br>"), escaped(one.tolerance), filled,
         one.passed() ? "" : ";background:var(--bad)", one.worst, one.passed() ? "pass" : "fail", verdict(one),
         one.seconds);
 }
@@ -142,7 +142,7 @@ std::string to_markdown(const ValidationReport& report) {
         const std::string solver = one.solver.empty() ? "" : one.solver;
         if (one.skipped.empty())
             page += fmt::format("| {} | {} | {} | {} | {:.2g} | {} |\n", one.name, solver, one.count,
-                                largest_errors(one), one.worst, verdict(one));
+                                largest_errors(one, ", "), one.worst, verdict(one));
         else
             page += fmt::format("| {} | {} | | {} | | left out |\n", one.name, solver, one.skipped);
     }

@@ -132,7 +132,7 @@ TEST(Materials, AliasesCaseAndSuggestions) {
     EXPECT_THAT(message_of([] {
                     builtin_material("acrilic", {"recipe.toml", 12, 9});
                 }),
-                HasSubstr("recipe.toml:12:9: unknown material \"acrilic\" did you mean \"acrylic\"?"));
+                HasSubstr("recipe.toml:12:9: unknown material \"acrilic\"; did you mean \"acrylic\"?"));
     EXPECT_THAT(message_of([] { builtin_material("unobtainium"); }), HasSubstr("give a built-in name or a file"));
     message_of([] { builtin_material(""); });
     message_of([] { builtin_material(std::string(1 << 20, 'x')); });

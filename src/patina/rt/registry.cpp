@@ -23,7 +23,7 @@ const Solver& solver_named(std::string_view name) {
         if (solver->name() == name) return *solver;
         names.emplace_back(solver->name());
     }
-    throw Error(ErrorKind::usage, "unknown solver \"" + std::string(name) + "\" " + did_you_mean(name, names));
+    throw Error(ErrorKind::usage, "unknown solver \"" + std::string(name) + "\"; " + did_you_mean(name, names));
 }
 
 }  // namespace patina::rt

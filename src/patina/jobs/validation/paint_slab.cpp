@@ -47,7 +47,6 @@ std::vector<Benchmark> paint_slab_benchmarks() {
             else
                 run_slab(solver, false, paint_slab::case_a, comparison);
         };
-        benchmark.for_statistical_solvers = true;
         result.push_back(std::move(benchmark));
     }
     return result;

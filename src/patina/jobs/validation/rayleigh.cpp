@@ -58,7 +58,6 @@ std::vector<Benchmark> rayleigh_benchmarks() {
             for (const double optical_thickness : {0.5, 1.0})
                 run_layer(solver, optical_thickness, reflectance, comparison);
         };
-        benchmark.for_statistical_solvers = true;
         result.push_back(std::move(benchmark));
     }
     return result;

@@ -98,8 +98,8 @@ void run_haze(const rt::Solver* solver, Comparison& comparison) {
         for (int s = 0; s < 3; ++s)
             values.push_back({row.upward ? 0.0 : haze_l::optical_thickness, row.upward, row.mu_o, row.phi_deg, s,
                               row.stokes[s], 1.5e-6});
-    compare_field(*solver, haze_layer(), haze_l::mu_i, 1 / faint, {.streams = 32, .fourier_tolerance = 0.0}, values,
-                  comparison);
+    compare_field(*solver, haze_layer(), haze_l::mu_i, 1 / faint,
+                  {.streams = 32, .fourier_tolerance = 0.0, .samples = 100'000}, values, comparison);
 }
 
 }  // namespace
