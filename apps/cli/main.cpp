@@ -33,15 +33,16 @@ void add_global_options(CLI::App& program, cli::Session& session) {
     program.add_flag("-q,--quiet", session.console.quiet, "say only what is asked for, and errors");
     program.add_flag("-v,--verbose", session.console.verbosity, "say more");
     program.add_flag("--json", session.console.json, "exactly one JSON document on stdout");
-    program
-        .add_option("--progress", session.console.progress_style, "how to show progress: auto, bar, plain, json, none")
+    program.add_option("--progress", session.console.progress_style, "how to show progress")
+        ->option_text("auto|bar|plain|json|none")
         ->transform(
             CLI::CheckedTransformer(std::map<std::string, cli::ProgressStyle>{{"auto", cli::ProgressStyle::automatic},
                                                                               {"bar", cli::ProgressStyle::bar},
                                                                               {"plain", cli::ProgressStyle::plain},
                                                                               {"json", cli::ProgressStyle::json},
                                                                               {"none", cli::ProgressStyle::none}}));
-    program.add_option("--color", session.console.color, "auto, always, never (NO_COLOR is honoured)")
+    program.add_option("--color", session.console.color, "colour in the terminal (NO_COLOR is honoured)")
+        ->option_text("auto|always|never")
         ->check(CLI::IsMember({"auto", "always", "never"}));
     program.set_version_flag("--version", std::string("patina ") + PATINA_VERSION);
 }
@@ -85,6 +86,7 @@ int run(int argc, char** argv) {
     cli::add_compare(program, session);
     cli::add_check(program, session);
     cli::add_materials(program, session);
+    cli::add_plugins(program, session);
     cli::add_new(program, session);
     cli::add_convert(program, session);
     cli::add_validate(program, session);

@@ -114,12 +114,12 @@ void add_film(std::vector<PluginDescriptor>& all) {
         all.push_back({"film",
                        name,
                        "The picture's size and window.",
-                       {{"width", "integer", "pixel", "768", ">= 1", ""},
-                        {"height", "integer", "pixel", "576", ">= 1", ""},
-                        {"crop_offset_x", "integer", "pixel", "0", ">= 0", ""},
-                        {"crop_offset_y", "integer", "pixel", "0", ">= 0", ""},
-                        {"crop_width", "integer", "pixel", "width", ">= 1", ""},
-                        {"crop_height", "integer", "pixel", "height", ">= 1", ""},
+                       {{"width", "integer", "pixel", "768", ">= 1", "of the whole picture"},
+                        {"height", "integer", "pixel", "576", ">= 1", "of the whole picture"},
+                        {"crop_offset_x", "integer", "pixel", "0", ">= 0", "first column of the window"},
+                        {"crop_offset_y", "integer", "pixel", "0", ">= 0", "first row of the window"},
+                        {"crop_width", "integer", "pixel", "width", ">= 1", "of the window"},
+                        {"crop_height", "integer", "pixel", "height", ">= 1", "of the window"},
                         {"file_format", "string", "", "openexr", "", "accepted, the output's name decides"},
                         {"pixel_format", "string", "", "rgba", "", "accepted, without effect"},
                         {"component_format", "string", "", "float32", "", "accepted, without effect"},
@@ -135,7 +135,7 @@ void add_film(std::vector<PluginDescriptor>& all) {
         all.push_back({"sampler",
                        name,
                        "All names give the same Owen-scrambled sampler.",
-                       {{"sample_count", "integer", "per pixel", "16", ">= 1", ""},
+                       {{"sample_count", "integer", "per pixel", "16", ">= 1", "how many paths"},
                         {"seed", "integer", "", "0", ">= 0", "another seed, other noise"},
                         {"jitter", "boolean", "", "true", "", "accepted, without effect"}}});
 }
@@ -179,8 +179,8 @@ void add_integrators(std::vector<PluginDescriptor>& all) {
     all.push_back({"texture",
                    "checkerboard",
                    "Two reflectances in squares.",
-                   {{"color0", "spectrum", "", "0.4", "0 .. 1", ""},
-                    {"color1", "spectrum", "", "0.2", "0 .. 1", ""},
+                   {{"color0", "spectrum", "", "0.4", "0 .. 1", "of the first square"},
+                    {"color1", "spectrum", "", "0.2", "0 .. 1", "of its neighbours"},
                     {"to_uv", "transform", "", "identity", "", "of texture coordinates"}}});
 }
 
