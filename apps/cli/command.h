@@ -34,6 +34,7 @@ void add_image(CLI::App& program, Session& session);
 void add_inspect(CLI::App& program, Session& session);
 void add_check(CLI::App& program, Session& session);
 void add_materials(CLI::App& program, Session& session);
+void add_scattering(CLI::App& program, Session& session);
 void add_plugins(CLI::App& program, Session& session);
 void add_new(CLI::App& program, Session& session);
 void add_convert(CLI::App& program, Session& session);

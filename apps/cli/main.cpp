@@ -77,6 +77,7 @@ int run(int argc, char** argv) {
     add_global_options(program, session);
     cli::add_solve(program, session);
     cli::add_field(program, session);
+    cli::add_scattering(program, session);
     cli::add_render(program, session);
     cli::add_plot(program, session);
     cli::add_image(program, session);

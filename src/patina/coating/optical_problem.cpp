@@ -49,6 +49,7 @@ class ProblemBuilder {
 
   private:
     rt::Layer layer_of(const OpticalLayer& layer) {
+        result_.particles.emplace_back();
         return {layer.optical_thickness, layer.single_scattering_albedo, layer.expansion, layer.refractive_index};
     }
 
@@ -66,6 +67,7 @@ class ProblemBuilder {
             components.push_back({properties, pigment.volume_fraction / properties.mean_volume_um3});
         }
         const optics::ScatteringMedium particles = optics::mix(components);
+        result_.particles.push_back(std::move(components));
 
         // The binder absorbs everywhere; what the particles take away by replacing it is in their cross sections.
         const double extinction_per_um = binder_absorption_per_um(host) + particles.extinction_per_um;

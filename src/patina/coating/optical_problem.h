@@ -5,12 +5,15 @@
 #include <vector>
 
 #include "patina/coating/recipe.h"
+#include "patina/optics/scattering/mixture.h"
 #include "patina/rt/problem.h"
 
 namespace patina::coating {
 
 struct OpticalProblem {
     rt::Problem problem;
+    // Of each layer, the particles in the order of its pigments; none of a layer in optical terms.
+    std::vector<std::vector<optics::MixtureComponent>> particles;
     std::vector<std::string> notes;      // what was assumed: extrapolated constants, packing, unknown k
     std::vector<std::string> citations;  // "name: publication" of every material used
 };
