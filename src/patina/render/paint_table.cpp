@@ -179,14 +179,14 @@ void PaintTable::tabulate_sampling() {
         // A hair off the horizon and the normal, where cells must keep a share all the same.
         const float theta_o = std::min(0.5f * pi_f * o / (size_.angles - 1), 0.5f * pi_f - 1e-3f);
         const Vec3 outgoing(std::sin(theta_o), 0, std::cos(theta_o));
-        std::array<std::array<double, cells>, cells> weight{};
+        std::array<std::array<double, columns>, rows> weight{};
         double total = 0;
-        for (int row = 0; row < cells; ++row)
-            for (int column = 0; column < cells; ++column) {
+        for (int row = 0; row < rows; ++row)
+            for (int column = 0; column < columns; ++column) {
                 for (int a = 0; a < sub; ++a)
                     for (int b = 0; b < sub; ++b) {
-                        const float cos_i = std::sqrt((row + (a + 0.5f) / sub) / cells);
-                        const float azimuth = 2 * pi_f * (column + (b + 0.5f) / sub) / cells;
+                        const float cos_i = std::sqrt((row + (a + 0.5f) / sub) / rows);
+                        const float azimuth = pi_f * (column + (b + 0.5f) / sub) / columns;
                         const float sin_i = safe_sqrt(1 - cos_i * cos_i);
                         ScatteringMatrix f;
                         evaluate(w, outgoing, {sin_i * std::cos(azimuth), sin_i * std::sin(azimuth), cos_i}, true, f);
@@ -195,25 +195,25 @@ void PaintTable::tabulate_sampling() {
                 total += weight[row][column];
             }
         // Every cell keeps a chance: what is small on average need not be at each wavelength.
-        const double floor = total > 0 ? 0.02 * total / (cells * cells) : 1.0;
+        const double floor = total > 0 ? 0.02 * total / (rows * columns) : 1.0;
         DirectionCells& d = directions_[o];
-        double rows_total = 0;
-        std::array<double, cells> row_sum{};
-        for (int row = 0; row < cells; ++row) {
+        double all_rows = 0;
+        std::array<double, rows> row_sum{};
+        for (int row = 0; row < rows; ++row) {
             for (double& cell : weight[row]) row_sum[row] += (cell += floor);
-            rows_total += row_sum[row];
+            all_rows += row_sum[row];
         }
-        d.rows[0] = 0;
-        for (int row = 0; row < cells; ++row) {
-            d.rows[row + 1] = row + 1 == cells ? 1.0f : d.rows[row] + static_cast<float>(row_sum[row] / rows_total);
-            d.columns[row][0] = 0;
-            for (int c = 0; c < cells; ++c)
-                d.columns[row][c + 1] =
-                    c + 1 == cells ? 1.0f : d.columns[row][c] + static_cast<float>(weight[row][c] / row_sum[row]);
+        d.of_row[0] = 0;
+        for (int row = 0; row < rows; ++row) {
+            d.of_row[row + 1] = row + 1 == rows ? 1.0f : d.of_row[row] + static_cast<float>(row_sum[row] / all_rows);
+            d.of_column[row][0] = 0;
+            for (int c = 0; c < columns; ++c)
+                d.of_column[row][c + 1] =
+                    c + 1 == columns ? 1.0f : d.of_column[row][c] + static_cast<float>(weight[row][c] / row_sum[row]);
         }
         // Albedo = pi times the mean of f over the cosine-weighted hemisphere; reciprocity makes it the share sent
         // here.
-        const double body = pi * total / (cells * cells);
+        const double body = pi * total / (rows * columns);
         const double mirror = mean(specular(w, outgoing.z())[0]);
         specular_share_[o] = static_cast<float>(mirror > 0 ? mirror / (mirror + body) : 0.0);
     }
@@ -331,17 +331,19 @@ Vec3 PaintTable::sample(const Vec3& outgoing, const Vec2& u, float choice, float
     // Take one of the two nearest nodes of the viewer's angle, then a row, then a cell.
     const Interval at(fast_acos(outgoing.z()) * (2 * inv_pi_f * (size_.angles - 1)), size_.angles);
     const DirectionCells& d = directions_[at.lower + (choice < at.weight ? 1 : 0)];
-    const auto pick = [](const std::array<float, cells + 1>& cumulative, float x) {
+    const auto pick = [](const auto& cumulative, float x) {
         int cell = 0;
-        for (int step = cells / 2; step > 0; step /= 2)
+        for (int step = static_cast<int>(cumulative.size() - 1) / 2; step > 0; step /= 2)
             if (cumulative[cell + step] <= x) cell += step;
         return std::pair(cell,
                          std::min((x - cumulative[cell]) / (cumulative[cell + 1] - cumulative[cell]), 0x1.fffffep-1f));
     };
-    const auto [row, row_rest] = pick(d.rows, u.x());
-    const auto [column, column_rest] = pick(d.columns[row], u.y());
-    const float cos2 = (row + row_rest) / cells, azimuth = 2 * pi_f * (column + column_rest) / cells;
-    const float sin_i = safe_sqrt(1 - cos2), c = std::cos(azimuth), s = std::sin(azimuth);
+    // One half of the number's range turns to one side, the other to the other.
+    const float side = u.y() < 0.5f ? 1.0f : -1.0f, turn = u.y() < 0.5f ? 2 * u.y() : 2 * (1 - u.y());
+    const auto [row, row_rest] = pick(d.of_row, u.x());
+    const auto [column, column_rest] = pick(d.of_column[row], std::min(turn, 0x1.fffffep-1f));
+    const float cos2 = (row + row_rest) / rows, azimuth = pi_f * (column + column_rest) / columns;
+    const float sin_i = safe_sqrt(1 - cos2), c = std::cos(azimuth), s = side * std::sin(azimuth);
     const Vec2 axis = unit_azimuth(outgoing.x(), outgoing.y(), Vec2::UnitX());
     const Vec3 incident(sin_i * (c * axis.x() - s * axis.y()), sin_i * (c * axis.y() + s * axis.x()), std::sqrt(cos2));
     density = cell_density(at, row, column) * incident.z() * inv_pi_f;
@@ -351,13 +353,11 @@ Vec3 PaintTable::sample(const Vec3& outgoing, const Vec2& u, float choice, float
 float PaintTable::pdf(const Vec3& outgoing, const Vec3& incident) const {
     const Interval at(fast_acos(outgoing.z()) * (2 * inv_pi_f * (size_.angles - 1)), size_.angles);
     const Vec2 axis = unit_azimuth(outgoing.x(), outgoing.y(), Vec2::UnitX());
-    const float x = incident.x() * axis.x() + incident.y() * axis.y();
-    const float y = incident.y() * axis.x() - incident.x() * axis.y();
-    const float sin_i = std::sqrt(x * x + y * y);
-    const float half_turn = sin_i > 0 ? fast_acos(x / sin_i) * (0.5f * inv_pi_f) : 0.0f;
-    const float azimuth = y < 0 ? 1 - half_turn : half_turn;
-    const int row = std::min(static_cast<int>(incident.z() * incident.z() * cells), cells - 1);
-    const int column = std::min(static_cast<int>(azimuth * cells), cells - 1);
+    const float sin2 = incident.x() * incident.x() + incident.y() * incident.y();
+    const float along = incident.x() * axis.x() + incident.y() * axis.y();
+    const float azimuth = sin2 > 0 ? fast_acos(along / std::sqrt(sin2)) * inv_pi_f : 0.0f;
+    const int row = std::min(static_cast<int>(incident.z() * incident.z() * rows), rows - 1);
+    const int column = std::min(static_cast<int>(azimuth * columns), columns - 1);
     return cell_density(at, row, column) * incident.z() * inv_pi_f;
 }
 

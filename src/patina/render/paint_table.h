@@ -66,7 +66,8 @@ class PaintTable {
     float pdf(const Vec3& outgoing, const Vec3& incident) const;
 
   private:
-    static constexpr int cells = 16;  // of the square of the light's cosine, and of its azimuth
+    // Of the square of the light's cosine, and of its azimuth from the viewer's, either way alike.
+    static constexpr int rows = 32, columns = 16;
     static constexpr int specular_nodes = 361;
 
     // Index and weight of a linear interpolation on nodes 0 .. count - 1.
@@ -109,10 +110,11 @@ class PaintTable {
     }
     // Light's direction cell by cell, for one node of the viewer's angle.
     struct DirectionCells {
-        std::array<float, cells + 1> rows;                        // cumulative over cos^2
-        std::array<std::array<float, cells + 1>, cells> columns;  // cumulative over the azimuth, for each row
-        float density(int row, int column) const {                // relative to the cosine-weighted hemisphere
-            return (rows[row + 1] - rows[row]) * (columns[row][column + 1] - columns[row][column]) * (cells * cells);
+        std::array<float, rows + 1> of_row;                          // cumulative over cos^2
+        std::array<std::array<float, columns + 1>, rows> of_column;  // cumulative over the azimuth, for each row
+        float density(int row, int column) const {                   // relative to the cosine-weighted hemisphere
+            return (of_row[row + 1] - of_row[row]) * (of_column[row][column + 1] - of_column[row][column]) *
+                   (rows * columns);
         }
     };
 
