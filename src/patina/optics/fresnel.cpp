@@ -1,5 +1,6 @@
 #include "patina/optics/fresnel.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "patina/core/contract.h"
@@ -54,7 +55,8 @@ Mueller fresnel_transmission(double cos_i, double n1, double n2) {
 double refracted_cosine(double cos_i, double n1, double n2) {
     const double ratio = n1 / n2;
     const double cos2_t = (n2 - n1) * (n2 + n1) / (n2 * n2) + ratio * ratio * cos_i * cos_i;
-    return cos2_t > 0.0 ? std::sqrt(cos2_t) : 0.0;
+    // Rounding may carry the normal beyond itself.
+    return cos2_t > 0.0 ? std::sqrt(std::min(cos2_t, 1.0)) : 0.0;
 }
 
 }  // namespace patina::optics

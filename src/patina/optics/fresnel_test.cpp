@@ -108,6 +108,16 @@ TEST(Fresnel, MetalReflectance) {
     }
 }
 
+// Of many pairs of indices some round to a cosine above 1, which nothing may be asked of.
+TEST(Fresnel, TheNormalStaysTheNormal) {
+    for (int i = 0; i < 2000; ++i) {
+        const double n1 = 1.0 + 0.00037 * i, n2 = 1.3 + 0.00011 * i;
+        const double cosine = refracted_cosine(1.0, n1, n2);
+        EXPECT_LE(cosine, 1.0);
+        EXPECT_NEAR(cosine, 1.0, 1e-15);
+    }
+}
+
 TEST(Fresnel, MatchedMediaDoNotReflect) {
     for (double cos_i : {1e-9, 0.3, 1.0}) {
         EXPECT_NEAR(fresnel_reflection(cos_i, 1.495, 1.495).norm(), 0.0, 1e-30);

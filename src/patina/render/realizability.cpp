@@ -26,4 +26,11 @@ bool is_realizable(const Throughput& path, double tolerance) {
     return all_realizable(path, tolerance);
 }
 
+bool extinguishes(const ScatteringMatrix& event, const Throughput& before, const Throughput& after) {
+    constexpr double left = 1e-3;  // of what unpolarized light would keep: single precision's 1e-6 is 1e-3 of it
+    for (int w = 0; w < wavelengths_per_path; ++w)
+        if (after.matrix(w)(0, 0) < left * before.matrix(w)(0, 0) * event.matrix(w)(0, 0)) return true;
+    return false;
+}
+
 }  // namespace patina::render

@@ -14,4 +14,8 @@ inline constexpr double event_tolerance = 1e-5, path_tolerance = 1e-3;
 bool is_realizable(const ScatteringMatrix& event, double tolerance = event_tolerance);
 bool is_realizable(const Throughput& path, double tolerance = path_tolerance);
 
+// Did `event` take so much from `before` that what is left, `after`, is mostly rounding at some wavelength? As crossed
+// polarizers do.
+bool extinguishes(const ScatteringMatrix& event, const Throughput& before, const Throughput& after);
+
 }  // namespace patina::render

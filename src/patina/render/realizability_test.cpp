@@ -51,6 +51,25 @@ TEST(Realizability, OfChainsOfEvents) {
     EXPECT_GT(found, 40);
 }
 
+// What crossed polarizers leave is rounding, which need not be realizable.
+TEST(Realizability, CrossedPolarizersExtinguish) {
+    const auto polarizer = [](float angle) {
+        ScatteringMatrix m;
+        const Vec3 axis(std::cos(angle), std::sin(angle), 0);
+        m.set_fresnel(splat(0.5f), splat(0.5f), splat(0), splat(0), axis, axis);
+        return m;
+    };
+    const Vec3 along = Vec3::UnitZ();
+    Throughput before(Vec3::UnitX());
+    before.append(polarizer(0.3f), along);
+    for (const auto& [angle, dark] :
+         {std::pair(0.3f, false), std::pair(1.0f, false), std::pair(0.3f + 1.5707963f, true)}) {
+        Throughput after = before;
+        after.append(polarizer(angle), along);
+        EXPECT_EQ(extinguishes(polarizer(angle), before, after), dark) << angle;
+    }
+}
+
 TEST(Realizability, AMirrorThatKeepsTheSenseOfRotationOnOneSideIsNone) {
     ScatteringMatrix m;
     m.form = ScatteringMatrix::Form::general;

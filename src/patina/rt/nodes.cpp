@@ -11,7 +11,8 @@ namespace patina::rt {
 double Ray::cosine_in(double n) const {
     if (n == index) return cosine;
     const double squared = (n - index) * (n + index) + index * index * cosine * cosine;
-    return squared > 0.0 ? std::sqrt(squared) / n : 0.0;
+    // Rounding may carry the normal beyond itself.
+    return squared > 0.0 ? std::min(std::sqrt(squared) / n, 1.0) : 0.0;
 }
 
 std::vector<Ray> quadrature_rays(const Problem& problem, int streams) {

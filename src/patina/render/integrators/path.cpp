@@ -170,10 +170,13 @@ class PathState {
         m.x_out = frame.to_world(m.x_out);
     }
     void append(const ScatteringMatrix& event, const Vec3& outgoing) {
+#ifndef NDEBUG
+        const Throughput before = throughput_;
+#endif
         throughput_.append(event, outgoing);
 #ifndef NDEBUG
-        // Tables of measurements need not be realizable.
-        events_realizable_ = events_realizable_ && is_realizable(event);
+        // Tables of measurements need not be realizable, and rounding is not.
+        events_realizable_ = events_realizable_ && is_realizable(event) && !extinguishes(event, before, throughput_);
         PATINA_ASSERT(!events_realizable_ || is_realizable(throughput_));
 #endif
     }
