@@ -75,9 +75,10 @@ nlohmann::json to_json(const jobs::FieldJob& job, const jobs::FieldResult& resul
 int run(const Options& options, Session& session) {
     const coating::Recipe recipe = coating::read_recipe(options.recipe, options.settings);
     const jobs::FieldJob job = make_job(options);
-    const jobs::FieldResult result = jobs::field(recipe, job);
+    const jobs::FieldResult result = jobs::field(recipe, job, session.control());
 
     Console& console = session.console;
+    console.end_progress();
     for (const std::string& note : result.notes) console.note("note: " + note);
     console.result("       tau  dir    theta      phi              I              Q              U              V");
     for (const jobs::FieldValue& v : result.radiance)

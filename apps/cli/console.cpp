@@ -77,17 +77,22 @@ void Console::draw(const ProgressReport& report) {
     last_drawn_ = now;
 
     const double fraction =
-        report.total > 0 ? static_cast<double>(report.done) / static_cast<double>(report.total) : 0.0;
+        report.total > 0 ? (static_cast<double>(report.done) + report.part) / static_cast<double>(report.total) : 0.0;
     const double elapsed = seconds_between(stage_start_, now);
     const double left = fraction > 0 ? elapsed * (1 - fraction) / fraction : 0.0;
 
     if (progress_style == ProgressStyle::json) {
-        const nlohmann::json line = {{"stage", report.stage},   {"done", report.done},  {"total", report.total},
-                                     {"detail", report.detail}, {"elapsed_s", elapsed}, {"left_s", left}};
+        const nlohmann::json line = {{"stage", report.stage}, {"done", report.done},     {"total", report.total},
+                                     {"part", report.part},   {"detail", report.detail}, {"elapsed_s", elapsed},
+                                     {"left_s", left}};
         fmt::print(stderr, "{}\n", line.dump());
     } else if (progress_style == ProgressStyle::plain) {
-        fmt::print(stderr, "{} {}/{} {} ({} left)\n", report.stage, report.done, report.total, report.detail,
-                   duration_text(left));
+        // The time left is known once there is progress; some stages know no end.
+        const std::string share = report.total > 0 ? fmt::format("/{}", report.total) : "",
+                          left_text = fraction > 0
+                                          ? fmt::format(" ({:.0f} %, {} left)", 100 * fraction, duration_text(left))
+                                          : "";
+        fmt::print(stderr, "{} {}{} {}{}\n", report.stage, report.done, share, report.detail, left_text);
     } else {
         constexpr int width = 30;
         const int filled = static_cast<int>(fraction * width);

@@ -1,6 +1,7 @@
 #pragma once
 // Runs the built program as a user would.
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -34,8 +35,10 @@ class PatinaTest : public ::testing::Test {
   protected:
     PatinaTest() {
         const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::temp_directory_path() / (std::string("patina_") + info->test_suite_name() + "_" + info->name() +
-                                               "_" + std::to_string(::getpid()));
+        std::string name =
+            std::string("patina_") + info->test_suite_name() + "_" + info->name() + "_" + std::to_string(::getpid());
+        std::replace(name.begin(), name.end(), '/', '_');  // in the names of tests with parameters
+        folder_ = fs::temp_directory_path() / name;
         fs::create_directories(folder_);
     }
     ~PatinaTest() override { fs::remove_all(folder_); }

@@ -199,6 +199,7 @@ ReflectanceSpectra VariableStack::solve(const std::vector<rt::Problem>& problems
     rt::SolveOptions options;
     options.streams = streams_;
     options.most_fourier_orders = 1;
+    options.cancel = control.cancel;
     ReflectanceSpectra result;
     for (auto* values : {&result.r45_0, &result.d8_excluded, &result.d8_included, &result.bihemispherical})
         values->assign(count, 0.0);

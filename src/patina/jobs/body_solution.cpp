@@ -52,7 +52,7 @@ BodySolution solve_body(const rt::Solver& solver, const rt::Problem& problem, co
     if (!is_sharp(solver, problem, tolerance)) return {solver.reflection(problem, options), {}};
     const rt::Truncation truncation = rt::truncate(problem, options.streams);
     BodySolution result{solver.reflection(truncation.scaled, options), closed_forms(truncation)};
-    rt::subtract_once_scattered(truncation, options.streams, result.reflection);
+    rt::subtract_once_scattered(truncation, options.streams, result.reflection, options.cancel);
     rt::report_truncation(truncation, result.reflection.diagnostics);
     return result;
 }

@@ -80,7 +80,7 @@ int chosen_streams(const FieldJob& job, const rt::Problem& problem) {
 
 }  // namespace
 
-FieldResult field(const coating::Recipe& recipe, const FieldJob& job) {
+FieldResult field(const coating::Recipe& recipe, const FieldJob& job, const JobControl& control) {
     check_incidence(job);
     if (!job.wavelength_nm && !recipe.is_wavelength_independent())
         throw Error(ErrorKind::usage, "this recipe depends on wavelength: give --wavelength-nm");
@@ -102,7 +102,10 @@ FieldResult field(const coating::Recipe& recipe, const FieldJob& job) {
     options.scalar = job.scalar;
     options.samples = job.samples;
     options.seed = job.seed;
+    options.cancel = control.cancel;
+    options.progress = [&](double part) { control.report({"solving", 0, 1, "", part}); };
     const rt::Field computed = solver.field(problem, request, options);
+    control.report({"solving", 1, 1, ""});
 
     // List the depths in order, without the directions that only exist inside when nothing was asked for inside.
     for (size_t d = 0; d < request.optical_depths.size(); ++d)

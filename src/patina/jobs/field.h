@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "patina/coating/recipe.h"
+#include "patina/core/progress.h"
 #include "patina/rt/solver.h"
 
 namespace patina::jobs {
@@ -40,6 +41,7 @@ struct FieldResult {
     std::vector<std::string> notes;
 };
 
-FieldResult field(const coating::Recipe& recipe, const FieldJob& job);
+// Throws Error(interrupted) when stopped.
+FieldResult field(const coating::Recipe& recipe, const FieldJob& job, const JobControl& control = {});
 
 }  // namespace patina::jobs

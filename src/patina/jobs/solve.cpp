@@ -1,6 +1,7 @@
 #include "patina/jobs/solve.h"
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <set>
 
@@ -14,6 +15,7 @@
 #include "patina/jobs/checkpoint.h"
 #include "patina/jobs/solve_checkpoint.h"
 #include "patina/jobs/stream_choice.h"
+#include "patina/jobs/unit_progress.h"
 #include "patina/jobs/wavelength_choice.h"
 #include "patina/version.h"
 
@@ -225,13 +227,17 @@ class Solving {
   private:
     void tell_wavelength_error(SolvePlan& plan) const;
     Run solve_all(int streams);
-    SolvedWavelength solve_one(size_t w, int streams);
+    void solve_into(Run& run, size_t w, UnitProgress& progress);
+    SolvedWavelength solve_one(size_t w, int streams, const std::function<void(double)>& progress);
     std::vector<brdf::OnceScattered> once_scattered(size_t w, int streams) const {
         return once_scattered_of(solver_, problems_[w].problem, streams, request_.tolerance);
     }
     // Upper bounds of the error at each wavelength, 1/sr.
     std::vector<double> estimate(const Run& run);
     double stream_error(const Run& run, size_t w);
+    void prepare_references(const std::vector<size_t>& wavelengths, int streams) {
+        references_.prepare(wavelengths, streams, control_, fmt::format("error, {} streams", streams));
+    }
     bool within_tolerance(const Run& run, size_t w, double error) const {
         return error <= request_.tolerance * run.scale[w];
     }
@@ -267,32 +273,45 @@ Run Solving::solve_all(int streams) {
             std::vector<double>(count),
             {}};
     run.pilots.resize(count);
-    std::atomic<int> finished = 0;
+    UnitProgress progress(control_, "solving", problems_.size());
     parallel_for(0, count, [&](std::ptrdiff_t w) {
-        if (control_.stop_requested()) return;
-        SolvedWavelength solved = solve_one(w, streams);
-        if (!is_statistical(solver_) && std::binary_search(pilots_.begin(), pilots_.end(), static_cast<size_t>(w)))
-            run.pilots[w] = between_nodes({solved.reflection, once_scattered(w, streams)});
-        run.reflections[w] = std::move(solved.reflection);
-        run.scale[w] = solved.scale;
-        run.difference_from_half[w] = solved.difference_from_half;
-        run.done[w] = 1;
-        control_.report({"solving", ++finished, count, fmt::format("{:g} nm", wavelengths_nm_[w])});
+        // A stop leaves the wavelength undone.
+        try {
+            if (!control_.stop_requested()) solve_into(run, w, progress);
+        } catch (const Error& stop) {
+            if (stop.kind() != ErrorKind::interrupted) throw;
+        }
     });
     return run;
 }
 
-SolvedWavelength Solving::solve_one(size_t w, int streams) {
+void Solving::solve_into(Run& run, size_t w, UnitProgress& progress) {
+    const std::string at = fmt::format("{:g} nm", wavelengths_nm_[w]);
+    SolvedWavelength solved = solve_one(w, run.streams, [&](double share) { progress.tell(w, 0.999 * share, at); });
+    if (!is_statistical(solver_) && std::binary_search(pilots_.begin(), pilots_.end(), w))
+        run.pilots[w] = between_nodes({solved.reflection, once_scattered(w, run.streams)});
+    run.reflections[w] = std::move(solved.reflection);
+    run.scale[w] = solved.scale;
+    run.difference_from_half[w] = solved.difference_from_half;
+    run.done[w] = 1;
+    progress.tell(w, 1.0, at);
+}
+
+SolvedWavelength Solving::solve_one(size_t w, int streams, const std::function<void(double)>& progress) {
     const std::string key = fmt::format("table of {} streams at {} nm", streams, wavelengths_nm_[w]);
     if (const auto kept = checkpoint_->find(key))
         if (auto solved = to_solved_wavelength(*kept)) return std::move(*solved);
     const rt::Problem& problem = problems_[w].problem;
-    rt::SolveOptions options{.streams = streams, .fourier_tolerance = fourier_tolerance(request_)};
+    rt::SolveOptions options{.streams = streams,
+                             .fourier_tolerance = fourier_tolerance(request_),
+                             .cancel = control_.cancel,
+                             .progress = progress};
     BodySolution body = solve_body(solver_, problem, options, request_.tolerance);
     SolvedWavelength solved;
     if (!is_statistical(solver_)) {
         const brdf::MuellerGrid grid = between_nodes(body);
         options.streams = half_streams(streams);
+        options.progress = {};
         solved.scale = largest_intensity(grid);
         solved.difference_from_half =
             largest_difference(grid, between_nodes(solve_body(solver_, problem, options, request_.tolerance)));
@@ -305,8 +324,8 @@ SolvedWavelength Solving::solve_one(size_t w, int streams) {
 // The part of the error that more streams would take away, from solutions of finer single scattering.
 double Solving::stream_error(const Run& run, size_t w) {
     const int finer = finer_streams(run.streams);
-    references_.prepare({w}, run.streams, control_);
-    references_.prepare({w}, finer, control_);
+    prepare_references({w}, run.streams);
+    prepare_references({w}, finer);
     return error_bound(run.difference_from_half[w],
                        largest_difference(references_.at(w, run.streams), references_.at(w, finer)));
 }
@@ -315,7 +334,7 @@ double Solving::stream_error(const Run& run, size_t w) {
 // error varies with wavelength: its ratio to the error is taken from the neighbouring pilots, the less favourable of
 // the two. What single scattering leaves is added in proportion to f00.
 std::vector<double> Solving::estimate(const Run& run) {
-    for (const int streams : {run.streams, finer_streams(run.streams)}) references_.prepare(pilots_, streams, control_);
+    for (const int streams : {run.streams, finer_streams(run.streams)}) prepare_references(pilots_, streams);
     std::vector<double> error(problems_.size(), 0.0), ratio;
     double scattering_share = scattering_amplification * scattering_tolerance(request_);
     for (const size_t w : pilots_) {

@@ -8,6 +8,7 @@
 #include "patina/coating/optical_problem.h"
 #include "patina/core/error.h"
 #include "patina/core/parallel.h"
+#include "patina/jobs/unit_progress.h"
 
 namespace patina::jobs {
 
@@ -26,25 +27,31 @@ const brdf::MuellerGrid& References::at(std::size_t w, int streams) const {
     return grids_.at({w, streams});
 }
 
-void References::prepare(const std::vector<std::size_t>& wavelengths, int streams, const JobControl& control) {
+void References::prepare(const std::vector<std::size_t>& wavelengths, int streams, const JobControl& control,
+                         const std::string& stage) {
     std::vector<std::size_t> missing;
     for (const std::size_t w : wavelengths)
         if (!grids_.contains({w, streams})) missing.push_back(w);
     std::vector<brdf::MuellerGrid> solved(missing.size());
+    UnitProgress progress(control, stage, missing.size());
     parallel_for(0, std::ssize(missing), [&](std::ptrdiff_t k) {
-        if (!control.stop_requested()) solved[k] = solve(missing[k], streams);
+        stop_if_requested(control.cancel);
+        const std::string at = fmt::format("{:g} nm", wavelengths_nm_[missing[k]]);
+        solved[k] = solve(missing[k], {.streams = streams,
+                                       .fourier_tolerance = fourier_tolerance_,
+                                       .cancel = control.cancel,
+                                       .progress = [&](double share) { progress.tell(k, 0.999 * share, at); }});
+        progress.tell(k, 1.0, at);
     });
-    if (control.stop_requested()) throw Error(ErrorKind::interrupted, "stopped before anything was solved");
     for (std::size_t k = 0; k < missing.size(); ++k) grids_[{missing[k], streams}] = std::move(solved[k]);
 }
 
-brdf::MuellerGrid References::solve(std::size_t w, int streams) const {
-    const std::string key = fmt::format("reference of {} streams at {} nm", streams, wavelengths_nm_[w]);
+brdf::MuellerGrid References::solve(std::size_t w, rt::SolveOptions options) const {
+    const std::string key = fmt::format("reference of {} streams at {} nm", options.streams, wavelengths_nm_[w]);
     if (const auto kept = checkpoint_.find(key, judged_values)) return to_grid(*kept);
     const coating::OpticalProblem optical =
         coating::optical_problem(recipe_, wavelengths_nm_[w], scattering_tolerance_);
-    const brdf::MuellerGrid grid = between_nodes(solve_body(
-        solver_, optical.problem, {.streams = streams, .fourier_tolerance = fourier_tolerance_}, tolerance_));
+    const brdf::MuellerGrid grid = between_nodes(solve_body(solver_, optical.problem, options, tolerance_));
     checkpoint_.add(key, to_values(grid));
     return grid;
 }

@@ -2,6 +2,7 @@
 // How many streams a table needs, found by solving a few wavelengths with growing numbers of them.
 
 #include <map>
+#include <string>
 #include <vector>
 
 #include "patina/coating/recipe.h"
@@ -31,11 +32,13 @@ class References {
 
     // The BRDF between nodes at wavelength w (a position) with exactly that many streams.
     const brdf::MuellerGrid& at(std::size_t w, int streams) const;
-    // Computes those of several wavelengths in parallel.
-    void prepare(const std::vector<std::size_t>& wavelengths, int streams, const JobControl& control);
+    // Computes those of several wavelengths in parallel; progress is told under the name of the stage, if any. Throws
+    // Error(interrupted) when stopped; what was finished is in the checkpoint.
+    void prepare(const std::vector<std::size_t>& wavelengths, int streams, const JobControl& control,
+                 const std::string& stage = {});
 
   private:
-    brdf::MuellerGrid solve(std::size_t w, int streams) const;
+    brdf::MuellerGrid solve(std::size_t w, rt::SolveOptions options) const;
 
     const rt::Solver& solver_;
     const coating::Recipe& recipe_;

@@ -40,9 +40,10 @@ class Samples {
     brdf::MuellerGrid solve(double wavelength_nm) const {
         const coating::OpticalProblem optical =
             coating::optical_problem(recipe_, wavelength_nm, std::clamp(0.01 * tolerance_, 1e-7, 1e-4));
-        return between_nodes(solve_body(rt::solver_named("doubling"), optical.problem,
-                                        {.streams = fewest_streams, .fourier_tolerance = 0.01 * tolerance_},
-                                        tolerance_));
+        return between_nodes(
+            solve_body(rt::solver_named("doubling"), optical.problem,
+                       {.streams = fewest_streams, .fourier_tolerance = 0.01 * tolerance_, .cancel = control_.cancel},
+                       tolerance_));
     }
 
     const coating::Recipe& recipe_;

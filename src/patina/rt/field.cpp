@@ -55,8 +55,14 @@ struct ModeField {
 class FieldSolver {
   public:
     FieldSolver(const StackMedia& media, const FieldRequest& request, const Levels& levels, const LayerMethod& method,
-                const SingleScattering& single, bool scalar)
-        : media_(media), request_(request), levels_(levels), method_(method), single_(single), scalar_(scalar) {}
+                const SingleScattering& single, const SolveOptions& options)
+        : media_(media),
+          request_(request),
+          levels_(levels),
+          method_(method),
+          single_(single),
+          scalar_(options.scalar),
+          cancel_(options.cancel) {}
 
     ModeField solve(int m) const;
 
@@ -79,6 +85,7 @@ class FieldSolver {
     const LayerMethod& method_;
     const SingleScattering& single_;
     bool scalar_;
+    const CancelToken* cancel_;
 };
 
 // From the base up: the reflection below each level, and what each slab and interface passes down.
@@ -91,12 +98,13 @@ std::vector<Added> FieldSolver::sweep_up(int m, Components components, std::vect
     below[count] = media_.base_reflection(m, components);
     std::map<std::pair<int, double>, LayerOperators<double>> solved;
     for (int p = count - 1; p >= 0; --p) {
+        stop_if_requested(cancel_);
         const auto [k, thickness] = levels_.slabs[p];
         if (thickness > 0.0) {
             auto [found, is_new] = solved.try_emplace({k, thickness});
             if (is_new)
                 found->second = media_.scatters(k, m)
-                                    ? method_.solve(media_.kernels[k].system(m, components), {thickness, true})
+                                    ? method_.solve(media_.kernels[k].system(m, components), {thickness, true, cancel_})
                                     : media_.clear_layer(k, thickness, components);
             slabs[p] = add_layer(found->second, below[p + 1]);
         } else {
@@ -254,12 +262,13 @@ Field solve_field(const Problem& problem, const FieldRequest& request, const Sol
     validate(problem);
     validate_request(problem, request);
     const Truncation truncation = truncate(problem, options.streams);
-    const StackMedia media(truncation.scaled, rays_of(problem, request, options.streams), options.streams);
+    const StackMedia media(truncation.scaled, rays_of(problem, request, options.streams), options.streams, 0,
+                           options.cancel);
     std::vector<double> depths;
     for (double depth : request.optical_depths) depths.push_back(truncation.scaled_depth(problem, depth));
     const Levels levels = cut(media.problem, depths);
     const SingleScattering single(media, truncation, levels.slabs, options.scalar);
-    const FieldSolver solver(media, request, levels, method, single, options.scalar);
+    const FieldSolver solver(media, request, levels, method, single, options);
 
     Field result;
     const optics::Stokes dark = optics::Stokes::Zero();
@@ -276,7 +285,10 @@ Field solve_field(const Problem& problem, const FieldRequest& request, const Sol
     for (int begin = 0; begin < orders && negligible < 2;) {
         const int end = std::min(orders, begin + std::max(1, thread_count()));
         std::vector<ModeField> modes(end - begin);
-        parallel_for(begin, end, [&](std::ptrdiff_t m) { modes[m - begin] = solver.solve(static_cast<int>(m)); });
+        parallel_for(begin, end, [&](std::ptrdiff_t m) {
+            stop_if_requested(options.cancel);
+            modes[m - begin] = solver.solve(static_cast<int>(m));
+        });
         for (const ModeField& mode : modes) {
             if (negligible == 2) break;
             accumulate(begin, mode.upward, request.phi, result.upward);
@@ -285,6 +297,7 @@ Field solve_field(const Problem& problem, const FieldRequest& request, const Sol
             negligible = mode.size <= options.fourier_tolerance * largest ? negligible + 1 : 0;
             result.diagnostics.fourier_orders = ++begin;
         }
+        if (options.progress) options.progress(static_cast<double>(begin) / orders);
     }
     return result;
 }

@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 
+#include "patina/core/progress.h"
 #include "patina/rt/kernel.h"
 
 namespace patina::rt {
@@ -19,6 +20,7 @@ struct LayerOperators {
 struct LayerRequest {
     double optical_thickness = 0.0;  // > 0, may be infinite
     bool transmission = true;
+    const CancelToken* cancel = nullptr;  // a stop throws Error(interrupted)
 };
 
 // What distinguishes one deterministic solver from another.

@@ -55,7 +55,8 @@ std::vector<OnceScatteredLayer> once_scattered(const Truncation& truncation, con
     return result;
 }
 
-void subtract_once_scattered(const Truncation& truncation, int streams, Reflection& reflection) {
+void subtract_once_scattered(const Truncation& truncation, int streams, Reflection& reflection,
+                             const CancelToken* cancel) {
     Truncation single{truncation.scaled, truncation.forward, {}, 0};
     single.lacking.resize(truncation.forward.size());
     for (std::size_t k = 0; k < truncation.forward.size(); ++k) {
@@ -64,7 +65,7 @@ void subtract_once_scattered(const Truncation& truncation, int streams, Reflecti
         single.order = std::max(single.order, single.lacking[k].order());
     }
     single.order = std::max(single.order, 1);
-    const StackMedia media(single.scaled, quadrature_rays(single.scaled, streams), streams);
+    const StackMedia media(single.scaled, quadrature_rays(single.scaled, streams), streams, 0, cancel);
     const SingleScattering scattering(media, single, cut(single.scaled, {}).slabs, false);
     const Medium& medium = media.above;
     PATINA_EXPECT(medium.size() == static_cast<int>(reflection.mu.size()));

@@ -27,7 +27,8 @@ struct OnceScatteredLayer {
 std::vector<OnceScatteredLayer> once_scattered(const Truncation& truncation, const std::vector<double>& mu);
 
 // Takes light scattered once, with what the truncated matrices kept, from a reflection of truncation.scaled with that
-// many streams.
-void subtract_once_scattered(const Truncation& truncation, int streams, Reflection& reflection);
+// many streams. A stop throws Error(interrupted).
+void subtract_once_scattered(const Truncation& truncation, int streams, Reflection& reflection,
+                             const CancelToken* cancel = nullptr);
 
 }  // namespace patina::rt

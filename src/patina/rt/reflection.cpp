@@ -33,12 +33,14 @@ double flux_error(const TransferSystem<double>& system, const LayerOperators<dou
 
 constexpr double lost_in_rounding = 1e-14;
 
-GroupSolution solve_group(const StackMedia& media, const LayerMethod& method, int m, Components components) {
+GroupSolution solve_group(const StackMedia& media, const LayerMethod& method, int m, Components components,
+                          const CancelToken* cancel) {
     const Problem& problem = media.problem;
     const int count = static_cast<int>(problem.layers.size());
     GroupSolution result;
     Eigen::MatrixXd below = media.base_reflection(m, components);
     for (int k = count - 1; k >= 0; --k) {
+        stop_if_requested(cancel);
         const Layer& layer = problem.layers[k];
         if (layer.optical_thickness > 0.0 && (media.scatters(k, m) || below.size() > 0)) {
             // Over a black base the transmitted light is lost; it is asked for at m = 0 only, to check the energy
@@ -46,7 +48,7 @@ GroupSolution solve_group(const StackMedia& media, const LayerMethod& method, in
             LayerOperators<double> operators;
             if (media.scatters(k, m)) {
                 const TransferSystem<double> system = media.kernels[k].system(m, components);
-                operators = method.solve(system, {layer.optical_thickness, m == 0 || below.size() > 0});
+                operators = method.solve(system, {layer.optical_thickness, m == 0 || below.size() > 0, cancel});
                 result.energy_balance = std::max(result.energy_balance, flux_error(system, operators));
             } else {
                 operators = media.clear_layer(k, layer.optical_thickness, components);
@@ -103,7 +105,7 @@ Reflection solve_reflection(const Problem& problem, const SolveOptions& options,
     validate(problem);
     const Truncation truncation = truncate(problem, options.streams);
     const StackMedia media(truncation.scaled, quadrature_rays(problem, options.streams), options.streams,
-                           options.most_fourier_orders);
+                           options.most_fourier_orders, options.cancel);
     const SingleScattering single(media, truncation, cut(media.problem, {}).slabs, options.scalar);
     const std::vector<int> order = ascending(media.above);
     Reflection result;
@@ -127,12 +129,13 @@ Reflection solve_reflection(const Problem& problem, const SolveOptions& options,
         const int end = std::min(orders, begin + std::max(1, thread_count()));
         result.modes.resize(end);
         parallel_for(begin, end, [&](std::ptrdiff_t m) {
+            stop_if_requested(options.cancel);
             Eigen::MatrixXd& mode = result.modes[m];
             mode = Eigen::MatrixXd::Zero(4 * order.size(), 4 * order.size());
             if (m <= single.order()) store_single(single, static_cast<int>(m), media, order, mode);
             if (m > media.order) return;
             for (const Components components : component_groups(static_cast<int>(m), options.scalar)) {
-                const GroupSolution group = solve_group(media, method, static_cast<int>(m), components);
+                const GroupSolution group = solve_group(media, method, static_cast<int>(m), components, options.cancel);
                 balance[m] = std::max(balance[m], group.energy_balance);
                 store(group, components, media, order, coherent, mode);
             }
@@ -143,6 +146,7 @@ Reflection solve_reflection(const Problem& problem, const SolveOptions& options,
             negligible = size <= options.fourier_tolerance * largest ? negligible + 1 : 0;
         }
         result.modes.resize(begin);
+        if (options.progress) options.progress(static_cast<double>(begin) / orders);
     }
     result.diagnostics.fourier_orders = static_cast<int>(result.modes.size());
     result.diagnostics.energy_balance = *std::max_element(balance.begin(), balance.end());

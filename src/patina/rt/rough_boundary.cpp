@@ -28,7 +28,8 @@ std::vector<Side> sides_of(const Medium& upper) {
 
 }  // namespace
 
-RoughBoundary::RoughBoundary(const RoughSurface& surface, const Medium& upper, std::complex<double> metal, int streams)
+RoughBoundary::RoughBoundary(const RoughSurface& surface, const Medium& upper, std::complex<double> metal, int streams,
+                             const CancelToken* cancel)
     : upper_(&upper) {
     const std::vector<Side> sides = sides_of(upper);
     const Eigen::Index rays = static_cast<Eigen::Index>(sides.size());
@@ -49,6 +50,7 @@ RoughBoundary::RoughBoundary(const RoughSurface& surface, const Medium& upper, s
         }
 
     parallel_for(0, rays, [&](std::ptrdiff_t i) {
+        stop_if_requested(cancel);
         Eigen::MatrixXd values(16, points + 1);
         for (Eigen::Index o = 0; o < rays; ++o) {
             if (sides[o].role == Role::beam || sides[i].role == Role::view) {

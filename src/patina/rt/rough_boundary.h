@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "patina/core/progress.h"
 #include "patina/rt/kernel.h"
 #include "patina/rt/microfacets.h"
 
@@ -14,7 +15,9 @@ namespace patina::rt {
 // 343) that make the sum over all rays exactly 1 for facets that absorb nothing, and keep reciprocity.
 class RoughBoundary {
   public:
-    RoughBoundary(const RoughSurface& surface, const Medium& upper, std::complex<double> metal, int streams);
+    // A stop throws Error(interrupted).
+    RoughBoundary(const RoughSurface& surface, const Medium& upper, std::complex<double> metal, int streams,
+                  const CancelToken* cancel = nullptr);
 
     int order() const { return order_; }
     // Largest deviation of c^2 from 1 on rays steeper than 60 degrees: how well the rays resolve the lobes.

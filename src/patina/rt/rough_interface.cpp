@@ -126,7 +126,7 @@ bool counts(Role out, Role in) {
 
 // Reflection modes on one side, in the solver's variables.
 std::vector<Eigen::MatrixXd> reflection_modes(const Microfacets& facets, const Azimuths& azimuths, const Medium& medium,
-                                              double sign_i) {
+                                              double sign_i, const CancelToken* cancel) {
     const int rays = medium.size();
     std::vector<Eigen::MatrixXd> modes(static_cast<std::size_t>(azimuths.cosines.cols()),
                                        Eigen::MatrixXd::Zero(4 * rays, 4 * rays));
@@ -134,6 +134,7 @@ std::vector<Eigen::MatrixXd> reflection_modes(const Microfacets& facets, const A
         return Cell{{medium.index * medium.index * (1.0 - medium.mu[i]) * (1.0 + medium.mu[i])}, {1.0}, -1};
     };
     parallel_for(0, rays, [&](std::ptrdiff_t i) {
+        stop_if_requested(cancel);
         for (int o = static_cast<int>(i); o < rays; ++o) {
             if (!counts(medium.roles[o], medium.roles[i])) continue;
             const double factor = 2.0 * pi * medium.scale[o] * medium.scale[i];
@@ -187,7 +188,7 @@ Eigen::VectorXd mean_albedo(const Microfacets& facets, const std::vector<Cell>& 
 }  // namespace
 
 RoughInterface::RoughInterface(const RoughSurface& surface, const std::vector<Ray>& rays, const Medium& upper,
-                               const Medium& lower, int streams, int most_orders)
+                               const Medium& lower, int streams, int most_orders, const CancelToken* cancel)
     : upper_(upper), lower_(lower) {
     const Microfacets facets(surface, upper.index, lower.index);
     // Lobes are about alpha wide in azimuth at middling angles. Those of Beckmann's facets fall off like exp(-(m
@@ -204,10 +205,11 @@ RoughInterface::RoughInterface(const RoughSurface& surface, const std::vector<Ra
     const int points = std::clamp(static_cast<int>(std::ceil(1.2 * spacing / width)), 2, 12);
     const std::vector<Cell> fine = cells_of(rays, points), coarse = cells_of(rays, 2);
 
-    above_ = reflection_modes(facets, azimuths, upper, -1.0);
-    below_ = reflection_modes(facets, azimuths, lower, 1.0);
+    above_ = reflection_modes(facets, azimuths, upper, -1.0, cancel);
+    below_ = reflection_modes(facets, azimuths, lower, 1.0, cancel);
     down_.assign(static_cast<std::size_t>(order_) + 1, Eigen::MatrixXd::Zero(4 * lower.size(), 4 * upper.size()));
     parallel_for(0, upper.size(), [&](std::ptrdiff_t i) {
+        stop_if_requested(cancel);
         for (int o = 0; o < lower.size(); ++o) {
             if (!counts(lower.roles[o], upper.roles[i])) continue;
             const int in = upper.rays[i], out = lower.rays[o];

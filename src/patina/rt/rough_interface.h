@@ -16,6 +16,7 @@
 #include <array>
 #include <vector>
 
+#include "patina/core/progress.h"
 #include "patina/rt/kernel.h"
 #include "patina/rt/microfacets.h"
 
@@ -23,9 +24,9 @@ namespace patina::rt {
 
 class RoughInterface {
   public:
-    // `most_orders` = 1 leaves out all but the azimuthal mean.
+    // `most_orders` = 1 leaves out all but the azimuthal mean. A stop throws Error(interrupted).
     RoughInterface(const RoughSurface& surface, const std::vector<Ray>& rays, const Medium& upper, const Medium& lower,
-                   int streams, int most_orders = 0);
+                   int streams, int most_orders = 0, const CancelToken* cancel = nullptr);
 
     int order() const { return order_; }
     // Largest |c^2 - 1| on rays steeper than 60 degrees: how well the rays resolve the reflected lobes.

@@ -2,6 +2,7 @@
 // What every solver of the vector radiative transfer equation offers, and the registry of solvers.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -21,6 +22,10 @@ struct SolveOptions {
         1'000'000;                // photon packets of a statistical solver; reflection() shares them among incidences
     std::uint64_t seed = 1;       // of its random numbers; the same seed gives the same bits on any number of threads
     int most_fourier_orders = 0;  // of reflection(); 1 is enough for fluxes and views along the normal; 0: all needed
+    // Asked between Fourier orders, within them, and between photon packets; a stop throws Error(interrupted).
+    const CancelToken* cancel = nullptr;
+    // Told the share of the work that is done, 0 to 1, from any thread. Fourier series may end before 1.
+    std::function<void(double)> progress = {};
 };
 
 struct Diagnostics {

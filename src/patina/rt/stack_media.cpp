@@ -7,7 +7,8 @@
 
 namespace patina::rt {
 
-StackMedia::StackMedia(const Problem& p, std::vector<Ray> all_rays, int streams, int most_orders)
+StackMedia::StackMedia(const Problem& p, std::vector<Ray> all_rays, int streams, int most_orders,
+                       const CancelToken* cancel)
     : problem(p), rays(std::move(all_rays)) {
     above = medium_of(rays, problem.refractive_index_above);
     for (const Layer& layer : problem.layers) layers.push_back(medium_of(rays, layer.refractive_index));
@@ -24,11 +25,11 @@ StackMedia::StackMedia(const Problem& p, std::vector<Ray> all_rays, int streams,
     }
 
     if (problem.has_rough_top()) {
-        rough_top.emplace(*problem.top_roughness, rays, above, layers.front(), streams, most_orders);
+        rough_top.emplace(*problem.top_roughness, rays, above, layers.front(), streams, most_orders, cancel);
         order = std::max(order, rough_top->order());
     }
     if (const auto* metal = std::get_if<MetalBase>(&problem.base); metal && metal->roughness) {
-        rough_base.emplace(*metal->roughness, layers.back(), metal->refractive_index, streams);
+        rough_base.emplace(*metal->roughness, layers.back(), metal->refractive_index, streams, cancel);
         order = std::max(order, rough_base->order());
     }
     if (const auto* known = std::get_if<SurfaceBase>(&problem.base)) {

@@ -17,8 +17,9 @@
 namespace patina::rt {
 
 struct StackMedia {
-    // `most_orders`: Fourier orders that will be asked for; 0: all.
-    StackMedia(const Problem& problem, std::vector<Ray> rays, int streams, int most_orders = 0);
+    // `most_orders`: Fourier orders that will be asked for; 0: all. A stop throws Error(interrupted).
+    StackMedia(const Problem& problem, std::vector<Ray> rays, int streams, int most_orders = 0,
+               const CancelToken* cancel = nullptr);
     StackMedia(const StackMedia&) = delete;
     StackMedia& operator=(const StackMedia&) = delete;
 

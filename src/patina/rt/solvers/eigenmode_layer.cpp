@@ -164,6 +164,7 @@ LayerOperators<double> EigenmodeMethod::solve(const TransferSystem<double>& syst
     const double tau = request.optical_thickness;
     const int n = system.size();
     const Blocks blocks(system, 0.0, 0.0);
+    stop_if_requested(request.cancel);
     const Modes modes = quadrature_modes(blocks, tau);
     Eigen::MatrixXd sums[2];
     for (int k = 0; k < 2; ++k) {
@@ -178,8 +179,10 @@ LayerOperators<double> EigenmodeMethod::solve(const TransferSystem<double>& syst
     if (!system.symmetric()) {
         constexpr double step = 1e-3;
         for (const auto& [shift, weight] :
-             {std::pair{step, 2.0 / 3}, {-step, 2.0 / 3}, {2 * step, -1.0 / 6}, {-2 * step, -1.0 / 6}})
+             {std::pair{step, 2.0 / 3}, {-step, 2.0 / 3}, {2 * step, -1.0 / 6}, {-2 * step, -1.0 / 6}}) {
+            stop_if_requested(request.cancel);
             extend(Blocks(system, shift, -0.5 * shift), modes, tau, weight, sums);
+        }
     }
 
     LayerOperators<double> result;

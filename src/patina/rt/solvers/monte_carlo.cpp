@@ -1,6 +1,7 @@
 #include "patina/rt/solvers/monte_carlo.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -27,12 +28,14 @@ struct BatchMeans {
 };
 
 // Walks `samples` packets in `batches` independent batches; make_sink(tally, random) builds what receives a batch's
-// local estimates. Packets of a batch are stratified in the depth of their first collision.
-template <int columns, class MakeSink>
+// local estimates; `done` is told after each batch how many are. Packets of a batch are stratified in the depth of
+// their first collision.
+template <int columns, class MakeSink, class Done>
 BatchMeans walk_batches(const Stack& stack, const std::vector<Cone>& cones, const FirstCollision<columns>& first,
                         std::int64_t samples, std::uint64_t seed, int batches, Eigen::Index values,
-                        const MakeSink& make_sink) {
+                        const MakeSink& make_sink, const CancelToken* cancel, const Done& done) {
     std::vector<Tally> sums(static_cast<std::size_t>(batches));
+    std::atomic<int> finished = 0;
     const std::int64_t packets = (samples + batches - 1) / batches;
     parallel_for(0, batches, [&](std::ptrdiff_t batch) {
         Tally tally = Tally::Zero(values);
@@ -40,11 +43,14 @@ BatchMeans walk_batches(const Stack& stack, const std::vector<Cone>& cones, cons
             RandomStream random(seed, static_cast<std::uint64_t>(batch));
             auto sink = make_sink(tally, random);
             Walk<columns, decltype(sink)> walk(stack, cones, random, sink);
-            for (std::int64_t i = 0; i < packets; ++i)
+            for (std::int64_t i = 0; i < packets; ++i) {
+                stop_if_requested(cancel);
                 walk.run(first.draw((static_cast<double>(i) + random.uniform()) / static_cast<double>(packets)),
                          first.power());
+            }
         }
         sums[static_cast<std::size_t>(batch)] = tally / static_cast<double>(packets);
+        done(static_cast<double>(++finished) / batches);
     });
 
     // Combine in the order of batches, whatever thread did them.
@@ -175,8 +181,12 @@ Field MonteCarloSolver::field(const Problem& problem, const FieldRequest& reques
         const FirstCollision<columns> first(stack, request.mu_i, incident);
         const int batches = static_cast<int>(std::min<std::int64_t>(128, options.samples));
         const auto values = static_cast<Eigen::Index>(4 * cones.size() * azimuths.size());
-        return walk_batches(stack, cones, first, options.samples, options.seed, batches, values,
-                            [&](Tally& tally, RandomStream&) { return AzimuthSink<columns>(tally, azimuths); });
+        return walk_batches(
+            stack, cones, first, options.samples, options.seed, batches, values,
+            [&](Tally& tally, RandomStream&) { return AzimuthSink<columns>(tally, azimuths); }, options.cancel,
+            [&](double part) {
+                if (options.progress) options.progress(part);
+            });
     };
     const bool physical =
         request.incident[0] > 0.0 && request.incident.tail<3>().norm() <= request.incident[0] * (1.0 + 1e-12);
@@ -230,9 +240,12 @@ Reflection MonteCarloSolver::reflection(const Problem& problem, const SolveOptio
     for (int i = 0; i < count; ++i) {
         const FirstCollision<4> first(stack, rule.nodes[static_cast<std::size_t>(i)], StokesColumns<4>::Identity());
         const std::uint64_t seed = hash64(options.seed + static_cast<std::uint64_t>(i));
-        const BatchMeans result =
-            walk_batches(stack, cones, first, samples, seed, batches, 16 * count * orders,
-                         [&](Tally& tally, RandomStream& random) { return FourierSink(tally, random, orders); });
+        const BatchMeans result = walk_batches(
+            stack, cones, first, samples, seed, batches, 16 * count * orders,
+            [&](Tally& tally, RandomStream& random) { return FourierSink(tally, random, orders); }, options.cancel,
+            [&](double part) {
+                if (options.progress) options.progress((i + part) / count);
+            });
         for (int o = 0; o < count; ++o)
             for (int m = 0; m < orders; ++m)
                 reflection.modes[static_cast<std::size_t>(m)].block<4, 4>(4 * o, 4 * i) =

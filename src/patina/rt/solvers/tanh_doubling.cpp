@@ -83,10 +83,12 @@ void saturate_conservative(TanhCoth<Scalar>& t, const TransferSystem<Scalar>& sy
 }
 
 template <class Scalar>
-TanhCoth<Scalar> semi_infinite(const TransferSystem<Scalar>& system, Arithmetic<Scalar>& arithmetic) {
+TanhCoth<Scalar> semi_infinite(const TransferSystem<Scalar>& system, const CancelToken* cancel,
+                               Arithmetic<Scalar>& arithmetic) {
     constexpr int most_doublings = 80;
     TanhCoth<Scalar> t = thin_layer<Scalar>(system, Scalar(0.28) * Scalar(system.smallest_mu), arithmetic);
     for (int step = 0; step < most_doublings; ++step) {
+        stop_if_requested(cancel);
         const Matrix<Scalar> before = t.x;
         double_thickness(t, system, arithmetic);
         const Scalar change = (t.x - before).cwiseAbs().maxCoeff() / t.x.cwiseAbs().maxCoeff();
@@ -121,14 +123,18 @@ LayerOperators<Scalar> solve(const TransferSystem<Scalar>& system, const LayerRe
     const bool infinite = std::isinf(request.optical_thickness);
     TanhCoth<Scalar> t;
     if (infinite) {
-        t = semi_infinite(system, arithmetic);
+        t = semi_infinite(system, request.cancel, arithmetic);
     } else {
         const double half = 0.5 * request.optical_thickness;
         const int steps = doublings(half, system.smallest_mu);
         t = thin_layer<Scalar>(system, std::ldexp(Scalar(half), -steps), arithmetic);
-        for (int step = 0; step < steps; ++step) double_thickness(t, system, arithmetic);
+        for (int step = 0; step < steps; ++step) {
+            stop_if_requested(request.cancel);
+            double_thickness(t, system, arithmetic);
+        }
     }
 
+    stop_if_requested(request.cancel);
     // In the signed matrices: reflection P = 1/(P + X) + 1/(P + U) - P, transmission P = 1/(P + X) - 1/(P + U).
     t.x.diagonal() += system.signature;
     t.u.diagonal() += system.signature;
