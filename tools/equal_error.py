@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Time to equal error: renders scenes against a converged picture of their own and prints, for each Stokes component, the
-root mean square error (over pixels and spectral bands) that one core-second leaves. Time to an error e is (that / e)^2.
+root mean square error that one core-second leaves, over pixels and spectral bands and over pixels in the green of linear
+sRGB. Time to an error e is (that / e)^2.
 
 Usage: equal_error.py [--patina build/release/bin/patina] [--spp 64] [--reference-spp 1024] [--seeds 2] [--integrator NAME]
                       [SCENE.xml ...]
@@ -29,18 +30,21 @@ def render(patina, scene, out, spp, seed, extra, threads=1):
 
 
 def mean_square_errors(patina, picture, reference):
+    """Of S0..S3 over the spectral bands, then of S0..S3 in green."""
     text = subprocess.run([patina, "compare", picture, reference, "--json"], check=True, capture_output=True, text=True).stdout
-    rows = {row["component"]: row["rms"] for row in json.loads(text)["stokes"]}
-    return [rows[c] ** 2 for c in COMPONENTS]
+    document = json.loads(text)
+    bands = {row["component"]: row["rms"] for row in document["stokes"]}
+    green = {row["component"]: row["G"]["rms"] for row in document["rgb"]}
+    return [bands[c] ** 2 for c in COMPONENTS] + [green[c] ** 2 for c in COMPONENTS]
 
 
 def measure(scene, arguments, folder):
-    """RMSE at --spp, core-seconds of it, and the RMSE that one core-second would leave."""
+    """RMSE at --spp (bands, then green), core-seconds of it, and the RMSE that one core-second would leave."""
     extra = ["--integrator", arguments.integrator] if arguments.integrator else []
     reference, picture = str(folder / "reference.exr"), str(folder / "picture.exr")
     # The reference is made by the scene's own method, whichever is measured.
     render(arguments.patina, scene, reference, arguments.reference_spp, 1000, [], arguments.threads)
-    squares, seconds = [0.0] * 4, 0.0
+    squares, seconds = [0.0] * 8, 0.0
     for seed in range(arguments.seeds):
         overhead = render(arguments.patina, scene, picture, 1, seed, extra)
         seconds += (render(arguments.patina, scene, picture, arguments.spp, seed, extra) - overhead) / arguments.seeds
@@ -61,12 +65,13 @@ def main():
     parser.add_argument("--integrator", default="")
     parser.add_argument("--threads", type=int, default=0, help="of the reference alone (0: all)")
     arguments = parser.parse_args()
-    print(f"{'scene':28} {'core-s':>8}  RMSE at {arguments.spp} spp, S0 S1 S2 S3" + " " * 14 + "RMSE after one core-second")
+    print(f"{'scene':28} {'core-s':>8} of     RMSE at {arguments.spp} spp, S0 S1 S2 S3" + " " * 14 + "RMSE after one core-second")
     with tempfile.TemporaryDirectory() as folder:
         for scene in arguments.scenes:
             errors, seconds, normalized = measure(scene, arguments, pathlib.Path(folder))
-            numbers = " ".join(f"{x:9.3g}" for x in errors) + "   " + " ".join(f"{x:9.3g}" for x in normalized)
-            print(f"{pathlib.Path(scene).stem:28} {seconds:8.2f}  {numbers}", flush=True)
+            for name, first in (("bands", 0), ("green", 4)):
+                numbers = "   ".join(" ".join(f"{x:9.3g}" for x in values[first:first + 4]) for values in (errors, normalized))
+                print(f"{pathlib.Path(scene).stem:28} {seconds:8.2f} {name:6} {numbers}", flush=True)
 
 
 if __name__ == "__main__":

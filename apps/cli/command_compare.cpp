@@ -22,6 +22,11 @@ json to_json(const jobs::Difference& d) {
     return {{"rms", d.root_mean_square}, {"max", d.largest}};
 }
 
+json to_json(const io::ComponentDifference& d) {
+    return {{"rms", d.root_mean_square}, {"mean", d.mean},       {"mean_absolute", d.mean_absolute},
+            {"max", d.largest},          {"max_x", d.largest_x}, {"max_y", d.largest_y}};
+}
+
 json document_of(const Options& options, const char* kind) {
     return {{"schema", "patina/compare/1"}, {"a", options.a}, {"b", options.b}, {"kind", kind}};
 }
@@ -67,20 +72,22 @@ void compare_two_images(const Options& options, const Console& console) {
     document["bands"] = difference.bands;
     document["not_finite"] = difference.not_finite;
     document["stokes"] = json::array();
+    document["rgb"] = json::array();
     console.result(fmt::format("A - B over all pixels and the {} bands; {} values that are not numbers are left out",
                                difference.bands, difference.not_finite));
-    console.result("         rms        mean    mean abs     largest  at x, y");
+    console.result("         rms        mean    mean abs     largest  at x, y    | rms in linear sRGB: R, G, B");
     for (int s = 0; s < 4; ++s) {
         const io::ComponentDifference& d = difference.stokes[s];
-        document["stokes"].push_back({{"component", fmt::format("S{}", s)},
-                                      {"rms", d.root_mean_square},
-                                      {"mean", d.mean},
-                                      {"mean_absolute", d.mean_absolute},
-                                      {"max", d.largest},
-                                      {"max_x", d.largest_x},
-                                      {"max_y", d.largest_y}});
-        console.result(fmt::format("  S{} {:9.3e} {:11.3e} {:11.3e} {:11.3e}  {}, {}", s, d.root_mean_square, d.mean,
-                                   d.mean_absolute, d.largest, d.largest_x, d.largest_y));
+        const auto& [red, green, blue] = difference.rgb[s];
+        json row = to_json(d);
+        row["component"] = fmt::format("S{}", s);
+        document["stokes"].push_back(row);
+        document["rgb"].push_back(
+            {{"component", fmt::format("S{}", s)}, {"R", to_json(red)}, {"G", to_json(green)}, {"B", to_json(blue)}});
+        console.result(fmt::format("  S{} {:9.3e} {:11.3e} {:11.3e} {:11.3e}  {:>10} | {:9.3e} {:9.3e} {:9.3e}", s,
+                                   d.root_mean_square, d.mean, d.mean_absolute, d.largest,
+                                   fmt::format("{}, {}", d.largest_x, d.largest_y), red.root_mean_square,
+                                   green.root_mean_square, blue.root_mean_square));
     }
     console.document(document);
 }

@@ -27,51 +27,57 @@ bool same_bins(const StokesImage& a, const StokesImage& b) {
     return true;
 }
 
-// Values of all pixels with `bands` values of a component a pixel; component and band of value i are found by the
-// caller.
-template <class ComponentOf>
-ImageDifference compare_values(const StokesImage& a, std::span<const float> left, std::span<const float> right,
-                               const ComponentOf& component_of) {
-    ImageDifference difference;
-    std::array<std::size_t, 4> counts{};
+// Differences of values [pixel][...] sorted into `kinds` by place, and how many are not numbers.
+template <class KindOf>
+std::vector<ComponentDifference> compare_values(const StokesImage& a, std::span<const float> left,
+                                                std::span<const float> right, int kinds, const KindOf& kind_of,
+                                                std::size_t& not_finite) {
+    std::vector<ComponentDifference> differences(kinds);
+    std::vector<std::size_t> counts(kinds);
     const std::size_t per_pixel = left.size() / std::max<std::size_t>(a.pixel_count(), 1);
+    not_finite = 0;
     for (std::size_t i = 0; i < left.size(); ++i) {
         const double d = double(left[i]) - double(right[i]);
         if (!std::isfinite(d)) {
-            ++difference.not_finite;
+            ++not_finite;
             continue;
         }
-        ComponentDifference& component = difference.stokes[component_of(i)];
-        ++counts[component_of(i)];
-        component.root_mean_square += d * d;
-        component.mean += d;
-        component.mean_absolute += std::abs(d);
-        if (std::abs(d) > component.largest) {
-            component.largest = std::abs(d);
-            component.largest_x = static_cast<int>(i / per_pixel % a.width);
-            component.largest_y = static_cast<int>(i / per_pixel / a.width);
+        ComponentDifference& of_kind = differences[kind_of(i)];
+        ++counts[kind_of(i)];
+        of_kind.root_mean_square += d * d;
+        of_kind.mean += d;
+        of_kind.mean_absolute += std::abs(d);
+        if (std::abs(d) > of_kind.largest) {
+            of_kind.largest = std::abs(d);
+            of_kind.largest_x = static_cast<int>(i / per_pixel % a.width);
+            of_kind.largest_y = static_cast<int>(i / per_pixel / a.width);
         }
     }
-    for (int k = 0; k < 4; ++k) {
+    for (int k = 0; k < kinds; ++k) {
         const double count = std::max<double>(static_cast<double>(counts[k]), 1);
-        difference.stokes[k].root_mean_square = std::sqrt(difference.stokes[k].root_mean_square / count);
-        difference.stokes[k].mean /= count;
-        difference.stokes[k].mean_absolute /= count;
+        differences[k].root_mean_square = std::sqrt(differences[k].root_mean_square / count);
+        differences[k].mean /= count;
+        differences[k].mean_absolute /= count;
     }
-    return difference;
+    return differences;
 }
 
 }  // namespace
 
 ImageDifference compare_images(const StokesImage& a, const StokesImage& b) {
     expect_same_size(a, b);
-    if (same_bins(a, b)) {
-        ImageDifference difference = compare_values(a, a.spectral, b.spectral, [](std::size_t i) { return i % 4; });
-        difference.bands = "spectral";
-        return difference;
-    }
-    ImageDifference difference = compare_values(a, a.rgb, b.rgb, [](std::size_t i) { return i / 3 % 4; });
-    difference.bands = "rgb";
+    ImageDifference difference;
+    std::size_t rgb_not_finite = 0;
+    const auto channels = compare_values(
+        a, a.rgb, b.rgb, 12, [](std::size_t i) { return static_cast<int>(i % 12); }, rgb_not_finite);
+    for (int i = 0; i < 12; ++i) difference.rgb[i / 3][i % 3] = channels[i];
+
+    const bool spectral = same_bins(a, b);
+    difference.bands = spectral ? "spectral" : "rgb";
+    const auto component_of = [&](std::size_t i) { return static_cast<int>(spectral ? i % 4 : i / 3 % 4); };
+    const auto components = compare_values(a, spectral ? a.spectral : a.rgb, spectral ? b.spectral : b.rgb, 4,
+                                           component_of, difference.not_finite);
+    std::copy(components.begin(), components.end(), difference.stokes.begin());
     return difference;
 }
 

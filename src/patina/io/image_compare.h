@@ -10,7 +10,7 @@
 
 namespace patina::io {
 
-// Of one Stokes component over all pixels and all bands compared; a - b.
+// Of one Stokes component over all pixels and all bands compared, or over all pixels of one colour channel; a - b.
 struct ComponentDifference {
     double root_mean_square = 0;
     double mean = 0;  // signed
@@ -22,7 +22,8 @@ struct ComponentDifference {
 struct ImageDifference {
     std::string bands;  // "spectral" when both have the same bins, else "rgb"
     std::array<ComponentDifference, 4> stokes;
-    std::size_t not_finite = 0;  // values left out
+    std::array<std::array<ComponentDifference, 3>, 4> rgb;  // [stokes][channel] of linear sRGB
+    std::size_t not_finite = 0;                             // values of `bands` left out
 };
 
 // Throws Error(input) when the sizes differ.

@@ -252,6 +252,18 @@ TEST(ImageCompare, MetricsOfAKnownDifference) {
     EXPECT_EQ(difference.stokes[2].largest, 0);
     EXPECT_NEAR(difference.stokes[3].mean, -1.0 / 3, 1e-15);
 
+    // Channels of colour are told apart: one of three pixels differs by 0.3 in green of S2, and nothing else does.
+    StokesImage greener = b;
+    greener.stokes_rgb(1)[2 * 3 + 1] -= 0.3f;
+    const ImageDifference by_channel = compare_images(b, greener);
+    // Float holds 0.3 to 3e-8.
+    EXPECT_NEAR(by_channel.rgb[2][1].root_mean_square, 0.3 / std::sqrt(3.0), 1e-7);
+    EXPECT_NEAR(by_channel.rgb[2][1].mean, 0.1, 1e-7);
+    EXPECT_EQ(by_channel.rgb[2][1].largest_x, 1);
+    EXPECT_EQ(by_channel.rgb[2][0].largest, 0);
+    EXPECT_EQ(by_channel.rgb[1][1].largest, 0);
+    EXPECT_EQ(by_channel.stokes[2].largest, 0);
+
     // An image without bins is compared by its colours.
     StokesImage coloured = b;
     coloured.bin_edges_nm.clear();

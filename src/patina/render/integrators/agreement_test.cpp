@@ -45,6 +45,23 @@ TEST(Agreement, PolarizedSpecularScene) {
                      "caustics");
 }
 
+// Surroundings of one radiance make glass invisible, also to a polarizer: what a face reflects and what it lets through
+// add up to the light that would be there without it. Whatever probabilities choose between the two.
+TEST(Agreement, GlassInAFurnaceIsInvisible) {
+    const Node glass = node("bsdf", "dielectric", {{"int_ior", 1.7}}),
+               pane = node("bsdf", "thindielectric", {{"int_ior", 1.5}});
+    // No roulette before all but 1e-6 of the light has left the ball.
+    const Node all = node("integrator", "path", {{"max_depth", std::int64_t{40}}, {"rr_depth", std::int64_t{41}}});
+    const auto lit = build_scene(
+        *scene({all, camera(), ball(0.4, glass), wall(pane), node("emitter", "constant", {uniform("radiance", 1)})}),
+        {});
+    const Measurements measured = measure(*lit, "path", 512);
+    Measurements exact(measured.size(), std::vector<double>(replicates, 0.0));
+    for (std::size_t i = 0; i < exact.size(); i += 4) exact[i].assign(replicates, 1.0);
+    expect_agreement(exact, measured, "furnace");
+    EXPECT_LT(relative_error(measured), 0.003);
+}
+
 // The state of the light reaches the camera alike from hits, light sampling and light paths.
 TEST(Agreement, PolarizedLamps) {
     const auto lit = build_scene(*polarized_lamps_scene(), {});

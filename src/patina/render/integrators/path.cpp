@@ -86,7 +86,7 @@ class PathState {
         ShadingPoint shading = shading_point();
         const bool abbreviate = may_abbreviate();
         shading.unpolarized_light = abbreviate;
-        if (!bsdf_sample(bsdf(), shading, outgoing, lobe, u, sample)) return false;
+        if (!sample_event(shading, outgoing, lobe, u, sample)) return false;
         events_ = sample.delta && !one_class_ ? classes_.after(events_, ScatteringEvent::specular)
                                               : after_continuous_event(shading, outgoing);
         axes_to_world(point_.frame, sample.weight);
@@ -131,6 +131,36 @@ class PathState {
         Vec3 outgoing, incident;  // local
         float factor = 1;         // that makes a weight of the model's value
     };
+    // Reflection off glass carries little light but much of the polarization, so the rarer of two ways is taken with at
+    // least this probability; only at the first two such events, for the weights of the other way multiply.
+    static constexpr float least_share_of_a_way = 0.25f;
+    static constexpr int most_evened_choices = 2;
+
+    // Does the lobe's number choose between two delta functions and nothing else?
+    static bool has_two_ways(const Bsdf& bsdf) {
+        return std::holds_alternative<Dielectric>(bsdf.model) || std::holds_alternative<ThinDielectric>(bsdf.model);
+    }
+    bool sample_event(const ShadingPoint& shading, const Vec3& outgoing, float lobe, const Vec2& u,
+                      BsdfSample& sample) {
+        if (evened_choices_ == most_evened_choices || !has_two_ways(bsdf()) || throughput_.depolarized())
+            return bsdf_sample(bsdf(), shading, outgoing, lobe, u, sample);
+
+        // Ask for reflection, which is the way of small numbers, to know how probable it is.
+        constexpr float largest_number = 1 - 0x1p-24f;
+        if (!bsdf_sample(bsdf(), shading, outgoing, 0, u, sample)) return false;
+        const float reflected = sample.pdf;
+        if (reflected > 1 - 1e-4f) return bsdf_sample(bsdf(), shading, outgoing, lobe, u, sample);
+        const float share = std::clamp(reflected, least_share_of_a_way, 1 - least_share_of_a_way);
+        ++evened_choices_;
+        if (lobe < share) {
+            sample.weight.scale(splat(reflected / share));
+            return true;
+        }
+        if (!bsdf_sample(bsdf(), shading, outgoing, largest_number, u, sample)) return false;
+        sample.weight.scale(splat((1 - reflected) / (1 - share)));
+        return true;
+    }
+
     // Three quarters of a paint's table can be spared where the path meets a lamp, the sky or a depolarizer next.
     bool may_abbreviate() const {
         return std::holds_alternative<Paint>(bsdf().model) && !scene_.lights.any_polarized();
@@ -192,6 +222,7 @@ class PathState {
     int events_ = LightPathClassifier::eye;  // what the path has met, as the classifier's state
     Vec3 last_position_ = Vec3::Zero();
     float last_pdf_ = 0, eta_ = 1;
+    int evened_choices_ = 0;
     bool last_delta_ = true, hero_only_ = false;
     bool abbreviated_ = false;  // the throughput has no more than the first column of last_event_
     AbbreviatedEvent last_event_;
