@@ -62,6 +62,13 @@ TEST_F(Pipeline, PaintedSpheresAreRenderedWithPolarization) {
     EXPECT_GT(fs::file_size(folder() / "dolp.png"), 200u);
 }
 
+TEST_F(Pipeline, LightTracingSaysWhatItLeavesOut) {
+    const Outcome glass = patina(quick_render("polar_balls.xml", "-o g.exr --spp 1 --integrator light"));
+    EXPECT_EQ(glass.exit_code, 0) << glass.err;
+    EXPECT_THAT(glass.err, HasSubstr("light tracing leaves out"));
+    EXPECT_EQ(patina(quick_render("polar_balls.xml", "-o p.exr --spp 1")).err.find("leaves out"), std::string::npos);
+}
+
 TEST_F(Pipeline, AMitsubaSceneRendersUnmodifiedAndWithMitsubasChannelNames) {
     const Outcome outcome = patina("render " + example("polar_balls.xml").string() +
                                    " -o b.exr --size 32x32 --spp 4 --stokes-rgb --no-png");

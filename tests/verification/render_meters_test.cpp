@@ -121,9 +121,10 @@ TEST(Meters, RadianceGrowsByTheSquareOfTheIndexInGlass) {
         const Measurement m =
             read(scene({path(200), block, constant_light(1),
                         meter("radiancemeter", {{"to_world", look_at({0.1, 0.2, -0.3}, target, {0, 1, 0})}})}),
-                 "path", 64);
-        // Every path ends outside with n^2 L in this lossless block: no noise but the rounding of some ten events.
-        EXPECT_NEAR(m.radiometric[0], n * n * visible_nm, 1e-4 * n * n * visible_nm);
+                 "path", 1024);
+        // Every path ends outside with n^2 L in this lossless block. The rarer way at an interface is taken more often
+        // than it is light, so weights scatter by half: 5e-4 is seen at 64 well-spread samples, a fourth of it here.
+        EXPECT_NEAR(m.radiometric[0], n * n * visible_nm, 5e-4 * n * n * visible_nm);
     }
 }
 

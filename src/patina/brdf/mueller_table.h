@@ -75,6 +75,7 @@ class MuellerTable {
                               std::span<const double> phi) const;
 
     // Order m of the body BRDF between the given cosines, (4 x mu_o.size()) x (4 x mu_i.size()); zero beyond the last.
+    // Once scattered light that is kept in closed form is no part of it.
     Eigen::MatrixXd mode(double wavelength_nm, int m, std::span<const double> mu_o, std::span<const double> mu_i) const;
     // How many orders the body BRDF has at a wavelength.
     int orders(double wavelength_nm) const;

@@ -20,11 +20,15 @@
 #include "patina/io/table_pbsdf.h"
 #include "patina/jobs/render_checkpoint.h"
 #include "patina/jobs/solve.h"
+#include "patina/render/scene.h"
 #include "patina/version.h"
 
 namespace patina::jobs {
 
 namespace {
+
+template <class T, class... Ts>
+constexpr bool is_one_of = (std::is_same_v<T, Ts> || ...);
 
 namespace fs = std::filesystem;
 
@@ -154,6 +158,19 @@ render::RenderCheckpoint checkpoint_of(const RenderRequest& request, const Check
     return checkpoint;
 }
 
+// Surfaces with a part that sends light one way only, which no path from a lamp can be joined to the camera by.
+bool shows_mirrors(const render::Scene& scene) {
+    using namespace render;
+    return std::ranges::any_of(scene.bsdfs, [](const Bsdf& bsdf) {
+        return std::visit(
+            []<class Model>(const Model&) {
+                return is_one_of<Model, Dielectric, ThinDielectric, Conductor, Plastic, Paint, Dipole, LinearPolarizer,
+                                 Retarder, CircularPolarizer, Mask, Null>;
+            },
+            bsdf.model);
+    });
+}
+
 }  // namespace
 
 render::Pictures render_scene(const RenderRequest& request, const JobControl& control) {
@@ -170,6 +187,10 @@ render::Pictures render_scene(const RenderRequest& request, const JobControl& co
     if (!request.checkpoint.empty() && !stopped && !request.keep_checkpoint) file.remove();
     const std::shared_ptr<const Properties> node = tree->only_child("integrator");
     const std::string integrator = request.options.integrator.value_or(node ? node->type : "path");
+    if (integrator == "light" && shows_mirrors(*scene))
+        warnings.emplace_back(
+            "light tracing leaves out what mirrors, glass and other surfaces without a spread show the camera; "
+            "integrator bidirectional has it");
     const auto add_provenance = [&](StokesImage& image) {
         image.metadata["command"] = request.command;
         image.metadata["scene"] = request.scene.string();
