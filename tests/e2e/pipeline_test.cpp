@@ -69,6 +69,25 @@ TEST_F(Pipeline, LightTracingSaysWhatItLeavesOut) {
     EXPECT_EQ(patina(quick_render("polar_balls.xml", "-o p.exr --spp 1")).err.find("leaves out"), std::string::npos);
 }
 
+// Mitsuba's names of what has other names here.
+TEST_F(Pipeline, MitsubasIntegratorsHaveTheirNames) {
+    const std::string size = " --size 24x24 --spp 4 --no-png ";
+    const std::string direct = R"(<integrator type="direct"><integer name="emitter_samples" value="2"/></integrator>)",
+                      path = R"(<integrator type="path"><integer name="max_depth" value="2"/></integrator>)";
+    std::string scene = read_file(example("polar_balls.xml"));
+    const std::size_t begin = scene.find("<integrator"), end = scene.rfind("</integrator>") + 13;
+    for (const auto& [name, integrator] : {std::pair("direct", direct), std::pair("path", path)}) {
+        write_file(folder() / (std::string(name) + ".xml"), scene.substr(0, begin) + integrator + scene.substr(end));
+        const Outcome outcome = patina(std::string("render ") + name + ".xml -o " + name + ".exr" + size);
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    }
+    EXPECT_EQ(info_of("direct.exr").at("mean"), info_of("path.exr").at("mean"));
+    const std::string balls = "render " + example("polar_balls.xml").string() + size;
+    ASSERT_EQ(patina(balls + "-o l.exr --integrator light").exit_code, 0);
+    ASSERT_EQ(patina(balls + "-o p.exr --integrator ptracer").exit_code, 0);
+    EXPECT_EQ(info_of("l.exr").at("mean"), info_of("p.exr").at("mean"));
+}
+
 TEST_F(Pipeline, AMitsubaSceneRendersUnmodifiedAndWithMitsubasChannelNames) {
     const Outcome outcome = patina("render " + example("polar_balls.xml").string() +
                                    " -o b.exr --size 32x32 --spp 4 --stokes-rgb --no-png");

@@ -187,7 +187,7 @@ render::Pictures render_scene(const RenderRequest& request, const JobControl& co
     if (!request.checkpoint.empty() && !stopped && !request.keep_checkpoint) file.remove();
     const std::shared_ptr<const Properties> node = tree->only_child("integrator");
     const std::string integrator = request.options.integrator.value_or(node ? node->type : "path");
-    if (integrator == "light" && shows_mirrors(*scene))
+    if ((integrator == "light" || integrator == "ptracer") && shows_mirrors(*scene))
         warnings.emplace_back(
             "light tracing leaves out what mirrors, glass and other surfaces without a spread show the camera; "
             "integrator bidirectional has it");

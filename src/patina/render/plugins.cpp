@@ -159,7 +159,15 @@ void add_integrators(std::vector<PluginDescriptor>& all) {
     integrator("appel", "Direct light only: E(D|G)L.", "true", spread);
     integrator("whitted", "Direct light, mirrors and refraction: ES*(D|G)L.", "true", spread);
     integrator("distribution", "Distribution ray tracing: E(S|G)*(D|G)?L.", "false", spread);
-    integrator("light", "Light tracing, from the lamps to the camera; no mirrors and glass before the eye.", "false");
+    for (const char* name : {"light", "ptracer"})
+        integrator(name, "Light tracing, from the lamps to the camera; no mirrors and glass before the eye.", "false");
+    const ParameterDescriptor samples = {"", "integer", "", "1", ">= 0", "accepted: samples per pixel decide"};
+    std::vector<ParameterDescriptor> of_direct = {
+        {"hide_emitters", "boolean", "", "false", "", "emitters do not show directly"}};
+    for (const char* name : {"shading_samples", "emitter_samples", "bsdf_samples"})
+        (of_direct.emplace_back(samples)).name = name;
+    all.push_back({"integrator", "direct", "Path tracing of emitters and directly lit surfaces (max_depth 2).",
+                   std::move(of_direct)});
     integrator("bidirectional", "Bidirectional path tracing with multiple importance sampling, polarized.", "false");
     all.push_back({"integrator",
                    "radiosity",

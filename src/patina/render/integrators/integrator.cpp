@@ -46,7 +46,7 @@ std::unique_ptr<Integrator> ray_tree(const Properties& node) {
 
 std::unique_ptr<Integrator> bidirectional(const Properties& node) {
     auto settings = common_settings<BidirectionalIntegrator::Settings>(node, false);
-    settings.light_only = node.type == "light";
+    settings.light_only = node.type == "light" || node.type == "ptracer";
     return std::make_unique<BidirectionalIntegrator>(settings);
 }
 
@@ -66,10 +66,19 @@ std::unique_ptr<Integrator> radiosity(const Properties& node) {
     return std::make_unique<RadiosityIntegrator>(settings);
 }
 
+std::unique_ptr<Integrator> direct(const Properties& node) {
+    PathIntegrator::Settings settings;
+    settings.max_depth = 2;
+    settings.hide_emitters = node.boolean("hide_emitters", false);
+    for (const char* name : {"shading_samples", "emitter_samples", "bsdf_samples"}) at_least(node, name, 1, 0);
+    return std::make_unique<PathIntegrator>(settings);
+}
+
 std::unique_ptr<Integrator> build_named(const Properties& node) {
     if (node.type == "appel" || node.type == "whitted" || node.type == "distribution") return ray_tree(node);
-    if (node.type == "light" || node.type == "bidirectional") return bidirectional(node);
+    if (node.type == "light" || node.type == "ptracer" || node.type == "bidirectional") return bidirectional(node);
     if (node.type == "radiosity") return radiosity(node);
+    if (node.type == "direct") return direct(node);
     if (node.type == "volumetric" || node.type == "volpath" || node.type == "volpathmis")
         return std::make_unique<VolumetricIntegrator>(common_settings<VolumetricIntegrator::Settings>(node, false));
     return std::make_unique<PathIntegrator>(common_settings<PathIntegrator::Settings>(node, false));
