@@ -12,6 +12,7 @@
 #include "patina/core/error.h"
 #include "patina/core/parallel.h"
 #include "patina/render/delta_light_at_sensor.h"
+#include "patina/render/non_finite_samples.h"
 #include "patina/render/picture_parts.h"
 #include "patina/render/plugins.h"
 #include "patina/render/scene.h"
@@ -88,33 +89,6 @@ std::unique_ptr<Integrator> integrator_of(const Scene& scene, const RenderOption
                 chosen.entries.push_back(entry);
     }
     return build_integrator(chosen);
-}
-
-// Samples that came out as NaN or infinity: how many, and where the first ones were.
-class NonFiniteSamples {
-  public:
-    void note(int x, int y, int sample) {
-        const std::lock_guard lock(mutex_);
-        ++count_;
-        if (places_.size() < 8) places_.push_back(fmt::format("({}, {}) sample {}", x, y, sample));
-    }
-    void set(std::int64_t count, std::vector<std::string> places) {
-        count_ = count;
-        places_ = std::move(places);
-    }
-    std::int64_t count() const { return count_; }
-    const std::vector<std::string>& places() const { return places_; }
-    std::string text() const { return fmt::format("{}", fmt::join(places_, "; ")); }
-
-  private:
-    std::int64_t count_ = 0;
-    std::mutex mutex_;
-    std::vector<std::string> places_;
-};
-
-bool all_finite(const StokesPacket& s) {
-    constexpr std::int32_t exponent = 0x7f800000;  // all ones in infinities and NaN
-    return set_lanes(((WideInt)s & exponent) == exponent) == 0;
 }
 
 // Do the sixteen numbers vanish?

@@ -1,0 +1,44 @@
+#pragma once
+// Samples that came out as NaN or infinity: told from others, and counted with the places of the first ones.
+
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "patina/render/packet.h"
+#include "patina/render/wide.h"
+
+namespace patina::render {
+
+inline bool all_finite(const StokesPacket& s) {
+    constexpr std::int32_t exponent = 0x7f800000;  // all ones in infinities and NaN
+    return set_lanes(((WideInt)s & exponent) == exponent) == 0;
+}
+
+// Thread-safe while samples are noted.
+class NonFiniteSamples {
+  public:
+    void note(int x, int y, int sample) {
+        const std::lock_guard lock(mutex_);
+        ++count_;
+        if (places_.size() < 8) places_.push_back(fmt::format("({}, {}) sample {}", x, y, sample));
+    }
+    void set(std::int64_t count, std::vector<std::string> places) {
+        count_ = count;
+        places_ = std::move(places);
+    }
+    std::int64_t count() const { return count_; }
+    const std::vector<std::string>& places() const { return places_; }
+    std::string text() const { return fmt::format("{}", fmt::join(places_, "; ")); }
+
+  private:
+    std::int64_t count_ = 0;
+    std::mutex mutex_;
+    std::vector<std::string> places_;
+};
+
+}  // namespace patina::render
