@@ -16,6 +16,9 @@ inline Complex reciprocal(Complex z) {
     const double norm = z.real() * z.real() + z.imag() * z.imag();
     return {z.real() / norm, -z.imag() / norm};
 }
+inline double reciprocal(double x) {
+    return 1.0 / x;
+}
 
 inline Complex times(Complex a, Complex b) {
     return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
@@ -33,9 +36,10 @@ template <class Number>
 void riccati_bessel_psi(Number x, int order, std::vector<Number>& psi) {
     // Recur the ratio psi_n / psi_{n-1} downward.
     psi.resize(order + 1);
+    const Number inverse = reciprocal(x);
     Number ratio = 0.0;
     for (int n = downward_start(std::abs(x), order); n >= 1; --n) {
-        ratio = 1.0 / ((2.0 * n + 1.0) / x - ratio);
+        ratio = reciprocal((2.0 * n + 1.0) * inverse - ratio);
         if (n <= order) psi[n] = ratio;
     }
 
@@ -44,7 +48,7 @@ void riccati_bessel_psi(Number x, int order, std::vector<Number>& psi) {
     if (std::abs(x) < 1.0 || std::abs(psi[0]) > 0.5) {
         psi[1] *= psi[0];
     } else {
-        psi[1] = psi[0] / x - std::cos(x);
+        psi[1] = psi[0] * inverse - std::cos(x);
     }
     for (int n = 2; n <= order; ++n) psi[n] *= psi[n - 1];
 }
@@ -94,16 +98,17 @@ void fill_multipoles(Outside x, Inside z, Ratio m, int order, std::vector<Comple
 
     a.resize(order);
     b.resize(order);
-    const Ratio inverse_m = 1.0 / m;
+    const Ratio inverse_m = reciprocal(m);
+    const Outside inverse_x = reciprocal(x);
     Outside chi_previous = std::cos(x);
-    Outside chi = chi_previous / x + std::sin(x);
+    Outside chi = chi_previous * inverse_x + std::sin(x);
     for (int n = 1; n <= order; ++n) {
-        const Outside n_over_x = static_cast<double>(n) / x;
+        const Outside n_over_x = static_cast<double>(n) * inverse_x;
         const Ratio electric = derivative[n] * inverse_m + n_over_x;
         const Ratio magnetic = derivative[n] * m + n_over_x;
         a[n - 1] = multipole(electric * psi[n] - psi[n - 1], electric * chi - chi_previous);
         b[n - 1] = multipole(magnetic * psi[n] - psi[n - 1], magnetic * chi - chi_previous);
-        const Outside chi_next = (2.0 * n + 1.0) / x * chi - chi_previous;
+        const Outside chi_next = (2.0 * n + 1.0) * inverse_x * chi - chi_previous;
         chi_previous = chi;
         chi = chi_next;
     }
