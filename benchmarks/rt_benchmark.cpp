@@ -5,6 +5,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "patina/core/memory.h"
 #include "patina/core/parallel.h"
 #include "patina/jobs/validation/siewert2000_data.h"
 #include "patina/rt/solver.h"
@@ -27,6 +28,7 @@ rt::Problem problem(double index, rt::Base base) {
 }
 
 void run(benchmark::State& state, const rt::Problem& what, const char* solver) {
+    keep_freed_memory();  // as the program does
     set_thread_count(1);
     const rt::SolveOptions options{.streams = static_cast<int>(state.range(0))};
     for (auto _ : state) benchmark::DoNotOptimize(rt::solver_named(solver).reflection(what, options));

@@ -8,6 +8,7 @@
 
 #include "patina/core/contract.h"
 #include "patina/core/error.h"
+#include "patina/core/memory.h"
 #include "patina/core/parallel.h"
 #include "patina/version.h"
 
@@ -121,5 +122,6 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    patina::keep_freed_memory();
     return run(argc, argv);
 }

@@ -99,7 +99,7 @@ ValidationReport validate(const ValidateRequest& request, const JobControl& cont
             control.report({"validating", ++done, total, benchmark.name});
         }
     }
-    for (const validation::PolarizationRow& row : validation::cost_of_ignoring_polarization(solvers.front()))
+    for (const validation::PolarizationRow& row : validation::cost_of_ignoring_polarization())
         report.cost_of_ignoring_polarization.push_back(
             {row.zenith_deg, row.phi_deg, row.published, row.vector, row.scalar});
     return report;

@@ -37,7 +37,7 @@ struct ScalarError {
 struct ValidationReport {
     std::string software;
     std::vector<ValidatedCase> cases;
-    std::vector<ScalarError> cost_of_ignoring_polarization;  // by the first solver of the request
+    std::vector<ScalarError> cost_of_ignoring_polarization;  // by the default solver
 
     bool passed() const;
     int failures() const;

@@ -5,6 +5,7 @@
 #include "patina/core/constants.h"
 #include "patina/jobs/validation/benchmark.h"
 #include "patina/jobs/validation/siewert2000_data.h"
+#include "patina/rt/solver.h"
 
 namespace patina::jobs::validation {
 
@@ -101,7 +102,8 @@ std::vector<Benchmark> siewert_benchmarks() {
     return {std::move(tables), std::move(digits), std::move(scalar)};
 }
 
-std::vector<PolarizationRow> cost_of_ignoring_polarization(const rt::Solver& solver) {
+std::vector<PolarizationRow> cost_of_ignoring_polarization() {
+    const rt::Solver& solver = *rt::solvers().front();
     rt::FieldRequest request{.mu_i = siewert2000::mu_i, .optical_depths = {0.0}, .phi = {0.0, pi / 2, pi}};
     for (int row = 10; row >= 0; --row) request.mu_o.push_back(cosine_of_row(row));
     const rt::Field vector = solver.field(siewert_problem(), request, {.streams = streams});
