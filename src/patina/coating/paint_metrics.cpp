@@ -175,6 +175,7 @@ PaintMetrics paint_metrics(const Recipe& recipe, const PaintOptions& options, co
     result.wanted_contrast_ratio = options.wanted_contrast_ratio;
     result.layer = stack.layer().index;
     result.streams = stack.streams();
+    result.streams_are_exact = stack.streams_are_exact();
     result.notes = stack.notes();
 
     result.own = stack.solve({{stack.thickness()}, std::nullopt}, control);

@@ -60,6 +60,7 @@ struct PaintMetrics {
     std::vector<FilmCoefficients> film;  // a wavelength each
     int layer = 0;                       // which layer varies
     int streams = 0;
+    bool streams_are_exact = true;  // for the phase functions; else forward peaks were truncated
     bool converged = true;
     std::vector<std::string> notes;
 };

@@ -37,14 +37,29 @@ RecipeLayer with_unit_thickness(RecipeLayer layer) {
     return layer;
 }
 
-// Nodes that integrate a phase function of order L exactly, and a decade of the tolerance for every four.
-int chosen_streams(const std::vector<rt::Problem>& problems, const StackOptions& options) {
-    if (options.streams > 0) return options.streams;
+// Nodes that integrate every phase function exactly.
+int exact_streams(const std::vector<rt::Problem>& problems) {
     int order = 0;
     for (const rt::Problem& problem : problems)
         for (const rt::Layer& layer : problem.layers) order = std::max(order, layer.expansion.order());
-    const int for_tolerance = static_cast<int>(std::ceil(-4.0 * std::log10(options.tolerance)));
-    return std::clamp(std::max(order / 2 + 2, for_tolerance), fewest_streams, most_streams);
+    return std::min(order / 2 + 2, most_streams);
+}
+
+// A decade of the tolerance for every four.
+int smooth_streams(double tolerance) {
+    return std::clamp(static_cast<int>(std::ceil(-4.0 * std::log10(tolerance))), fewest_streams, most_streams);
+}
+
+// The largest difference of two answers in units of the largest value.
+double largest_difference(const ReflectanceSpectra& a, const ReflectanceSpectra& b) {
+    double difference = 0.0, largest = 0.0;
+    for (const auto values : {&ReflectanceSpectra::r45_0, &ReflectanceSpectra::d8_excluded,
+                              &ReflectanceSpectra::bihemispherical})
+        for (std::size_t w = 0; w < (a.*values).size(); ++w) {
+            difference = std::max(difference, std::abs((a.*values)[w] - (b.*values)[w]));
+            largest = std::max(largest, std::abs((b.*values)[w]));
+        }
+    return largest > 0.0 ? difference / largest : 0.0;
 }
 
 // Reflectance factors from the azimuthal mean of the BRDF, element I <- I.
@@ -112,7 +127,35 @@ VariableStack::VariableStack(const Recipe& recipe, const StackOptions& options, 
                         fmt::format("solver \"{}\" cannot do this recipe ({})", solver_.name(), reason));
         optical_per_length_.push_back(problem.layers[layer_.index].optical_thickness);
     }
-    streams_ = chosen_streams(problems_, options);
+    streams_ = options.streams > 0 ? options.streams : chosen_streams(control);
+}
+
+// Reflectances of coarse particles need fewer nodes than their phase functions, since forward peaks are truncated
+// (rt/truncation.h): as many as make no difference any more at the ends and the middle of the spectrum, to an opaque
+// layer and to one that lets half of the light through. Neither depends on the recipe's thickness or base.
+int VariableStack::chosen_streams(const JobControl& control) const {
+    const int exact = exact_streams(problems_);
+    int streams = smooth_streams(options_.tolerance);
+    if (solver_.is_statistical()) return std::max(exact, streams);
+
+    const int last = static_cast<int>(problems_.size()) - 1;
+    std::vector<rt::Problem> probes;
+    for (const int w : std::set<int>{0, last / 2, last})
+        for (const double transport_thickness : {4.0, std::numeric_limits<double>::infinity()}) {
+            const double scattering = transport_scattering(w);
+            const double thickness = scattering > 0.0 ? transport_thickness / scattering : 1.0;
+            probes.push_back(problem(w, {{thickness}, 0.0}));
+        }
+    ReflectanceSpectra coarse;
+    for (; streams < exact; streams = (3 * streams + 1) / 2) {
+        control.report({"choosing streams", streams, 0, ""});
+        if (coarse.r45_0.empty()) coarse = solve(probes, streams, control);
+        ReflectanceSpectra finer = solve(probes, std::min(exact, (3 * streams + 1) / 2), control);
+        // Half of the tolerance is left for what still finer ones would show.
+        if (largest_difference(coarse, finer) < 0.5 * options_.tolerance) return streams;
+        coarse = std::move(finer);
+    }
+    return std::max(exact, smooth_streams(options_.tolerance));
 }
 
 // Every wavelength, with unit thickness of the variable layer.
@@ -141,6 +184,10 @@ StackMemory::SetUp VariableStack::set_up(const JobControl& control) const {
         notes.insert("rough top: d:8 excluded is without the reflection of a smooth surface; 45:0 has a part of it");
     result.notes.assign(notes.begin(), notes.end());
     return result;
+}
+
+bool VariableStack::streams_are_exact() const {
+    return streams_ >= exact_streams(problems_);
 }
 
 double VariableStack::transport_scattering(int w) const {
@@ -189,15 +236,16 @@ ReflectanceSpectra VariableStack::solve(const Question& question, const JobContr
         rt::add_to(fingerprint, problems.back());
     }
     if (const ReflectanceSpectra* known = options_.memory->answer(fingerprint.value())) return *known;
-    const ReflectanceSpectra result = solve(problems, control);
+    const ReflectanceSpectra result = solve(problems, streams_, control);
     if (converged_) options_.memory->keep(fingerprint.value(), result);
     return result;
 }
 
-ReflectanceSpectra VariableStack::solve(const std::vector<rt::Problem>& problems, const JobControl& control) const {
+ReflectanceSpectra VariableStack::solve(const std::vector<rt::Problem>& problems, int streams,
+                                        const JobControl& control) const {
     const std::ptrdiff_t count = std::ssize(problems);
     rt::SolveOptions options;
-    options.streams = streams_;
+    options.streams = streams;
     options.most_fourier_orders = 1;
     options.cancel = control.cancel;
     ReflectanceSpectra result;

@@ -75,6 +75,8 @@ class VariableStack {
 
     const std::vector<double>& wavelengths_nm() const { return options_.wavelengths_nm; }
     int streams() const { return streams_; }
+    // Are there enough streams for the phase functions as they are, without truncation?
+    bool streams_are_exact() const;
     const std::vector<std::string>& notes() const { return notes_; }  // sorted, each once
     bool has_interface() const { return recipe_.has_interface; }
 
@@ -111,7 +113,8 @@ class VariableStack {
   private:
     StackMemory::SetUp set_up(const JobControl& control) const;
     rt::Problem problem(int w, const Question& question) const;
-    ReflectanceSpectra solve(const std::vector<rt::Problem>& problems, const JobControl& control) const;
+    int chosen_streams(const JobControl& control) const;
+    ReflectanceSpectra solve(const std::vector<rt::Problem>& problems, int streams, const JobControl& control) const;
 
     const Recipe& recipe_;
     StackOptions options_;

@@ -179,6 +179,33 @@ TEST(PaintMetrics, ConservativeFilmWithoutEndIsPerfectlyWhite) {
     EXPECT_EQ(m.infinite.d8_included[0] > m.infinite.d8_excluded[0], true);
 }
 
+// An extender that scatters forward needs fewer streams than its phase function has terms: truncated forward peaks and
+// exact single scattering leave the reflectances within the tolerance of those of all streams.
+TEST(PaintMetrics, CoarseParticlesNeedFewerStreamsThanTheirPhaseFunctions) {
+    const std::vector<std::string> coarse = {
+        "layers.0.pigments.0.material={ n = 1.62 }",
+        "layers.0.pigments.0.size={ distribution = \"lognormal\", median_radius_um = 0.6, sigma_g = 1.15 }",
+        "layers.0.thickness_um=40"};
+    const Recipe recipe = parse_recipe(paint_text, "paint.toml", ".", coarse);
+    PaintOptions options = at_550();
+    options.stack.streams = 60;
+    const PaintMetrics all = paint_metrics(recipe, options);
+    EXPECT_TRUE(all.streams_are_exact);
+    options.stack.streams = 0;
+    for (const double tolerance : {1e-3, 1e-5}) {
+        options.stack.tolerance = tolerance;
+        const PaintMetrics chosen = paint_metrics(recipe, options);
+        EXPECT_FALSE(chosen.streams_are_exact);
+        EXPECT_LT(chosen.streams, 40) << tolerance;
+        // The sizes are averaged to a tenth of the tolerance.
+        const double allowed = tolerance * all.infinite.r45_0[0] + (tolerance < 1e-3 ? 1e-5 : 0.0);
+        EXPECT_NEAR(chosen.over_black.r45_0[0], all.over_black.r45_0[0], allowed);
+        EXPECT_NEAR(chosen.over_black.d8_excluded[0], all.over_black.d8_excluded[0], allowed);
+        EXPECT_NEAR(chosen.over_white.bihemispherical[0], all.over_white.bihemispherical[0], allowed);
+        EXPECT_NEAR(chosen.infinite.d8_included[0], all.infinite.d8_included[0], allowed);
+    }
+}
+
 TEST(HidingThickness, FindsTheRootOfAKnownFilm) {
     // Kubelka and Munk without absorption, S = 1: R0 = d/(1+d) over black.
     const auto contrast = [](double d) {

@@ -95,7 +95,8 @@ PaintReport paint(const coating::Recipe& recipe, const PaintRequest& request, co
     if (request.angular) {
         SolveRequest whole;
         whole.wavelengths_nm = options.stack.wavelengths_nm;
-        whole.streams = report.metrics.streams;
+        // Where forward peaks are truncated, directions want more streams than reflectances, and a bound.
+        whole.streams = report.metrics.streams_are_exact ? report.metrics.streams : options.stack.streams;
         whole.tolerance = options.stack.tolerance;
         whole.solver = options.stack.solver;
         whole.command = request.command;
