@@ -72,6 +72,13 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
         });
         const size_t acceptable = std::max<size_t>(2, word.size() / 3);
         if (edit_distance(word, *nearest) <= acceptable) return fmt::format("did you mean \"{}\"?", *nearest);
+
+        // "CaCO3-calcite" for "CaCO3", "rough" for "roughconductor": the one begins with the other.
+        constexpr size_t shortest_beginning = 3;
+        for (const std::string& candidate : candidates)
+            if (std::min(word.size(), candidate.size()) >= shortest_beginning &&
+                (word.starts_with(candidate) || candidate.starts_with(word)))
+                return fmt::format("did you mean \"{}\"?", candidate);
     }
     return list_all ? fmt::format("known: {}", fmt::join(candidates, ", ")) : std::string{};
 }
