@@ -53,8 +53,8 @@ int smooth_streams(double tolerance) {
 // The largest difference of two answers in units of the largest value.
 double largest_difference(const ReflectanceSpectra& a, const ReflectanceSpectra& b) {
     double difference = 0.0, largest = 0.0;
-    for (const auto values : {&ReflectanceSpectra::r45_0, &ReflectanceSpectra::d8_excluded,
-                              &ReflectanceSpectra::bihemispherical})
+    for (const auto values :
+         {&ReflectanceSpectra::r45_0, &ReflectanceSpectra::d8_excluded, &ReflectanceSpectra::bihemispherical})
         for (std::size_t w = 0; w < (a.*values).size(); ++w) {
             difference = std::max(difference, std::abs((a.*values)[w] - (b.*values)[w]));
             largest = std::max(largest, std::abs((b.*values)[w]));

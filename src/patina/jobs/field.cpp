@@ -65,23 +65,69 @@ void check_incidence(const FieldJob& job) {
     check_angles(job.phi_deg, 360.0, "--phi-deg");
 }
 
-// Enough for six digits of the field: the phase function exactly, and the angular field to rounding of printed tables.
-int chosen_streams(const FieldJob& job, const rt::Problem& problem) {
-    if (job.streams != 0) {
-        if (job.streams < 2 || job.streams > 512)
-            throw Error(ErrorKind::usage, fmt::format("--streams {}: 2 to 512 make sense", job.streams));
-        return job.streams;
-    }
+void check_streams(int streams) {
+    if (streams != 0 && (streams < 2 || streams > 512))
+        throw Error(ErrorKind::usage, fmt::format("--streams {}: 2 to 512 make sense", streams));
+}
+
+constexpr int usual_streams = 32, most_streams = 72;
+
+// Enough for the digits of printed tables: the phase function exactly, as far as it goes.
+int exact_streams(const rt::Problem& problem) {
     int order = 0;
     for (const rt::Layer& layer : problem.layers) order = std::max(order, layer.expansion.order());
-    // Longer phase functions are truncated, with exact single scattering.
-    return std::clamp(order / 2 + 8, 32, 72);
+    return std::clamp(order / 2 + 8, usual_streams, most_streams);
+}
+
+double largest_difference(const rt::Field& a, const rt::Field& b) {
+    double largest = 0.0;
+    for (const auto hemisphere : {&rt::Field::upward, &rt::Field::downward})
+        for (std::size_t d = 0; d < (a.*hemisphere).size(); ++d)
+            for (std::size_t o = 0; o < (a.*hemisphere)[d].size(); ++o)
+                for (std::size_t p = 0; p < (a.*hemisphere)[d][o].size(); ++p)
+                    largest = std::max(largest,
+                                       ((a.*hemisphere)[d][o][p] - (b.*hemisphere)[d][o][p]).lpNorm<Eigen::Infinity>());
+    return largest;
+}
+
+double largest_value(const rt::Field& field) {
+    rt::Field dark = field;
+    for (auto* hemisphere : {&dark.upward, &dark.downward})
+        for (auto& depth : *hemisphere)
+            for (auto& direction : depth)
+                for (optics::Stokes& stokes : direction) stokes.setZero();
+    return largest_difference(field, dark);
+}
+
+// Phase functions too long for that are truncated, with exact single scattering, and then far fewer nodes do than their
+// terms ask for. Climbs in steps of one half until what is left, by the fall of the differences, is beyond the fifth
+// digit.
+rt::Field converged_field(const rt::Solver& solver, const rt::Problem& problem, const rt::FieldRequest& request,
+                          rt::SolveOptions options) {
+    constexpr double beyond_fifth_digit = 5e-6;
+    const int most = exact_streams(problem);
+    options.streams = most < most_streams || solver.is_statistical() ? most : 12;
+    rt::Field coarser = solver.field(problem, request, options);
+    double difference_before = 0.0;
+    while (options.streams < most) {
+        options.streams = std::min(most, (3 * options.streams + 1) / 2);
+        rt::Field field = solver.field(problem, request, options);
+        const double difference = largest_difference(coarser, field);
+        if (difference_before > 0.0) {
+            const double left = difference * std::clamp(difference / difference_before, 0.3, 1.0);
+            if (left <= beyond_fifth_digit * largest_value(field)) return field;
+        }
+        difference_before = difference;
+        coarser = std::move(field);
+    }
+    return coarser;
 }
 
 }  // namespace
 
 FieldResult field(const coating::Recipe& recipe, const FieldJob& job, const JobControl& control) {
     check_incidence(job);
+    check_streams(job.streams);
     if (!job.wavelength_nm && !recipe.is_wavelength_independent())
         throw Error(ErrorKind::usage, "this recipe depends on wavelength: give --wavelength-nm");
 
@@ -98,13 +144,14 @@ FieldResult field(const coating::Recipe& recipe, const FieldJob& job, const JobC
     result.optical_thickness = total_optical_thickness(problem);
     const rt::FieldRequest request = make_request(job, result.optical_thickness);
     rt::SolveOptions options;
-    options.streams = chosen_streams(job, problem);
     options.scalar = job.scalar;
     options.samples = job.samples;
     options.seed = job.seed;
     options.cancel = control.cancel;
     options.progress = [&](double part) { control.report({"solving", 0, 1, "", part}); };
-    const rt::Field computed = solver.field(problem, request, options);
+    options.streams = job.streams;
+    const rt::Field computed =
+        job.streams != 0 ? solver.field(problem, request, options) : converged_field(solver, problem, request, options);
     control.report({"solving", 1, 1, ""});
 
     // List the depths in order, without the directions that only exist inside when nothing was asked for inside.
