@@ -5,6 +5,7 @@
 #include "patina/core/constants.h"
 #include "patina/core/contract.h"
 #include "patina/optics/scattering/mixture.h"
+#include "patina/optics/scattering/packed_mixture.h"
 #include "patina/optics/scattering/structure_factor.h"
 
 namespace patina::coating {
@@ -58,14 +59,17 @@ class ProblemBuilder {
         double total_fraction = 0.0;
         for (const Pigment& pigment : layer.pigments) total_fraction += pigment.volume_fraction;
 
+        // One kind is packed with the sizes it has while they are averaged; several are packed together.
         const double packing_fraction = packing_of(layer, total_fraction);
+        const bool together = packing_fraction > 0.0 && layer.pigments.size() > 1;
+        const double packed_alone = together ? 0.0 : packing_fraction;
         std::vector<optics::MixtureComponent> components;
         for (const Pigment& pigment : layer.pigments) {
-            const optics::ScatteringProperties properties =
-                std::visit([&](const auto& particles) { return properties_of(particles, host, packing_fraction); },
-                           pigment.particles);
+            const optics::ScatteringProperties properties = std::visit(
+                [&](const auto& particles) { return properties_of(particles, host, packed_alone); }, pigment.particles);
             components.push_back({properties, pigment.volume_fraction / properties.mean_volume_um3});
         }
+        if (together) optics::pack(components, host.real(), wavelength_nm_, tolerance_);
         const optics::ScatteringMedium particles = optics::mix(components);
         result_.particles.push_back(std::move(components));
 
