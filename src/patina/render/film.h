@@ -79,10 +79,10 @@ class Film {
         add_wavelength<1>(sums, spectral, w, colour);
         add_wavelength<2>(sums, spectral, w, colour);
         add_wavelength<3>(sums, spectral, w, colour);
-        sums[bins_] += lanes_from<0>(colour);
-        sums[bins_ + 1] += lanes_from<4>(colour);
-        sums[bins_ + 2] += lanes_from<8>(colour);
-        sums[bins_ + 3] += lanes_from<12>(colour);
+        sums[bins_] += quarter(colour, 0);
+        sums[bins_ + 1] += quarter(colour, 1);
+        sums[bins_ + 2] += quarter(colour, 2);
+        sums[bins_ + 3] += quarter(colour, 3);
     }
 
     // Is `samples` a count of samples of a pixel after which a batch ends? There are up to `most_batches` of equal
@@ -108,19 +108,13 @@ class Film {
         int bin;           // at the nanometre's start, -1 before the first
         float upper_edge;  // where the next bin begins within this nanometre, or infinity
     };
-    template <int first>
-    static Float4 lanes_from(const StokesPacket& s) {
-        return __builtin_shufflevector(s, s, first, first + 1, first + 2, first + 3);
-    }
     // The mean of four wavelengths estimates the integral over the visible range; each bin takes its share.
     template <int lane>
     void add_wavelength(Float4* sums, const StokesPacket& spectral, const Wavelengths& w, StokesPacket& colour) const {
-        constexpr int i = 4 * lane, q = i + 1, u = i + 2, v = i + 3;
         const Nanometre& at = nanometres_[w.node[lane]];
         const int bin = at.bin + (w.nm[lane] >= at.upper_edge ? 1 : 0);
-        if (bin >= 0 && bin < bins_) sums[bin] += lanes_from<i>(spectral) * bin_weight_[bin];
-        colour += spread(at.xyz) *
-                  __builtin_shufflevector(spectral, spectral, i, i, i, i, q, q, q, q, u, u, u, u, v, v, v, v);
+        if (bin >= 0 && bin < bins_) sums[bin] += quarter(spectral, lane) * bin_weight_[bin];
+        colour += spread(at.xyz) * repeated<4 * lane>(spectral);
     }
 
     FilmSettings settings_;

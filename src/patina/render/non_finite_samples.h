@@ -10,13 +10,14 @@
 #include <fmt/ranges.h>
 
 #include "patina/render/packet.h"
-#include "patina/render/wide.h"
 
 namespace patina::render {
 
 inline bool all_finite(const StokesPacket& s) {
     constexpr std::int32_t exponent = 0x7f800000;  // all ones in infinities and NaN
-    return set_lanes(((WideInt)s & exponent) == exponent) == 0;
+    Mask4 bad{};
+    for (int row = 0; row < 4; ++row) bad |= ((Mask4)stokes_row(s, row) & exponent) == exponent;
+    return !(bad[0] | bad[1] | bad[2] | bad[3]);
 }
 
 // Thread-safe while samples are noted.

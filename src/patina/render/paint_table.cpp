@@ -19,26 +19,37 @@ std::uint16_t to_half(float value) {
     const auto half = static_cast<_Float16>(value);
     return std::bit_cast<std::uint16_t>(half);
 }
-// A column of a Mueller matrix for four wavelengths: 16 halves.
-StokesPacket load_halves(const std::uint16_t* p) {
+// One element of a Mueller matrix for four wavelengths: four halves.
+Float4 load_element(const std::uint16_t* p) {
+#if defined(__F16C__)
+    return (Float4)_mm_cvtph_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p)));
+#else
+    Float4 element;
+    for (int i = 0; i < 4; ++i) element[i] = static_cast<float>(std::bit_cast<_Float16>(p[i]));
+    return element;
+#endif
+}
+// A column of it: 16 halves.
+StokesPacket load_column(const std::uint16_t* p) {
 #if defined(__AVX512F__)
     return (StokesPacket)_mm512_cvtph_ps(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p)));
+#elif defined(__F16C__)
+    const auto half = [](const std::uint16_t* from) {
+        return (Float8)_mm256_cvtph_ps(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from)));
+    };
+    return {half(p), half(p + 8)};
 #else
-    StokesPacket result;
-    for (int i = 0; i < 16; ++i) result[i] = static_cast<float>(std::bit_cast<_Float16>(p[i]));
-    return result;
+    return make_stokes(load_element(p), load_element(p + 4), load_element(p + 8), load_element(p + 12));
 #endif
 }
 
 // The first row of a matrix whose columns stand beside each other from p on, for four wavelengths.
 StokesPacket load_first_row(const std::uint16_t* p) {
-    alignas(32) std::uint16_t row[16];
-    for (int column = 0; column < 4; ++column) std::copy_n(p + 16 * column, 4, row + 4 * column);
-    return load_halves(row);
+    return make_stokes(load_element(p), load_element(p + 16), load_element(p + 32), load_element(p + 48));
 }
 
 // V changes its sign where light goes the other way.
-const StokesPacket other_way{1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, -1, -1, -1, -1};
+const StokesPacket other_way = make_stokes(splat(1), splat(1), splat(1), splat(-1));
 
 // Adds S M^T S, the matrix for light that goes the other way, to another's columns.
 void add_reversed(const StokesPacket* m, StokesPacket* columns) {
@@ -255,8 +266,8 @@ void PaintTable::interpolate(const Place& at, const WavelengthPlace& wavelength,
         }
         StokesPacket* target = a > b ? reversed : sums;
         for (int column = 0; column < count; ++column) {
-            target[column] += low * load_halves(place + 16 * column);
-            target[column] += high * load_halves(place + next + 16 * column);
+            target[column] += low * load_column(place + 16 * column);
+            target[column] += high * load_column(place + next + 16 * column);
         }
     }
     // Both ways add up in the same order, one product a statement so that each is contracted alike: the first column

@@ -8,7 +8,7 @@
 
 namespace patina::render {
 
-// The bit operations below are templates over one word (std::uint32_t) or sixteen (WideBits).
+// The bit operations below are templates over one word (std::uint32_t) or many (WideBits).
 
 // Mixes the bits of a 32-bit word (Mueller's constants found by Wellons' hash prospector, 2018: bias 0.17).
 template <class Bits>
@@ -104,7 +104,7 @@ class Sampler {
     std::uint32_t key_ = 0, sample_ = 0, draw_ = 0;
 };
 
-// The same draws for sixteen paths at once, whose samplers stay where they are.
+// The same draws for many paths at once, whose samplers stay where they are.
 class SamplerBlock {
   public:
     void set(int lane, const Sampler& sampler) {

@@ -91,7 +91,7 @@ std::unique_ptr<Integrator> integrator_of(const Scene& scene, const RenderOption
     return build_integrator(chosen);
 }
 
-// Do the sixteen numbers vanish?
+// Do all numbers vanish?
 bool all_zero(const StokesPacket& s) {
     for (int i = 0; i < 16; ++i)
         if (s[i] != 0) return false;
@@ -278,7 +278,7 @@ class Renderer {
         block.count = 0;
     }
 
-    // Draws place on the film, place on the lens and wavelengths for up to sixteen samples.
+    // Draws place on the film, place on the lens and wavelengths for as many samples as there are lanes.
     void begin_samples(SampleBlock& block, int first, int last) const {
         enum CameraDraw : std::uint32_t { on_film, on_lens, hue, camera_draws };
         SamplerBlock draws;

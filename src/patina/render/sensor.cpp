@@ -34,7 +34,7 @@ void Sensor::rays(const FloatLanes& film_x, const FloatLanes& film_y, const Floa
         for (int k = 0; k < count; ++k) *results[k] = ray({film_x[k], film_y[k]}, {lens_x[k], lens_y[k]});
         return;
     }
-    // A pinhole: as ray() does it, on sixteen lanes.
+    // A pinhole: as ray() does it, lane by lane.
     const WideFloat x = (1 - 2 * film_x.load()) * tan_half_x, y = (1 - 2 * film_y.load()) * tan_half_y;
     const auto to_world = [&](int row) { return rotation(row, 0) * x + rotation(row, 1) * y + rotation(row, 2); };
     const WideVec3 direction = unit(WideVec3{to_world(0), to_world(1), to_world(2)});

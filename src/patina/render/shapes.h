@@ -15,7 +15,7 @@ struct Hit {
     int instance = -1;   // through which the shape is seen; then analytic shapes are those of its group
 };
 
-// What sixteen rays met. Rays that reach nowhere (t_max < 0) meet nothing.
+// What the rays of a block met. Rays that reach nowhere (t_max < 0) meet nothing.
 struct RayBlock {
     FloatLanes origin_x, origin_y, origin_z, direction_x, direction_y, direction_z;
     FloatLanes t;  // as far as the ray reaches; after a query as far as the hit

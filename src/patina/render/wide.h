@@ -1,6 +1,6 @@
 #pragma once
-// Sixteen paths side by side: one number of each path in one lane. Kernels written as templates over the scalar type
-// serve one path (float) as well as sixteen (WideFloat).
+// Paths side by side: one number of each path in one lane, as many as a register holds. Kernels written as templates
+// over the scalar type serve one path (float) as well as many (WideFloat).
 
 #include <cmath>
 #include <cstdint>
@@ -10,15 +10,21 @@
 
 namespace patina::render {
 
+#if defined(__AVX512F__)
 inline constexpr int wide_lanes = 16;
+#elif defined(__AVX__)
+inline constexpr int wide_lanes = 8;
+#else
+inline constexpr int wide_lanes = 4;
+#endif
 
-using WideFloat = float __attribute__((vector_size(64)));
-using WideInt = std::int32_t __attribute__((vector_size(64)));
-using WideBits = std::uint32_t __attribute__((vector_size(64)));
+using WideFloat = float __attribute__((vector_size(4 * wide_lanes)));
+using WideInt = std::int32_t __attribute__((vector_size(4 * wide_lanes)));
+using WideBits = std::uint32_t __attribute__((vector_size(4 * wide_lanes)));
 
 // An array of one number a path, as vector registers load and store it.
 template <class T, class Wide>
-struct alignas(64) LanesOf {
+struct alignas(4 * wide_lanes) LanesOf {
     T values[wide_lanes]{};
 
     T& operator[](int lane) { return values[lane]; }
@@ -37,6 +43,8 @@ inline float sqrt_of(float x) {
 inline WideFloat sqrt_of(WideFloat x) {
 #if defined(__AVX512F__)
     return (WideFloat)_mm512_sqrt_ps((__m512)x);
+#elif defined(__AVX__)
+    return (WideFloat)_mm256_sqrt_ps((__m256)x);
 #else
     WideFloat root;
     for (int lane = 0; lane < wide_lanes; ++lane) root[lane] = std::sqrt(x[lane]);
@@ -61,6 +69,8 @@ inline WideFloat broadcast(float x, WideFloat) {
 inline unsigned set_lanes(WideInt mask) {
 #if defined(__AVX512DQ__)
     return _mm512_movepi32_mask((__m512i)mask);
+#elif defined(__AVX__) && !defined(__AVX512F__)
+    return static_cast<unsigned>(_mm256_movemask_ps((__m256)mask));
 #else
     unsigned bits = 0;
     for (int lane = 0; lane < wide_lanes; ++lane) bits |= mask[lane] ? 1u << lane : 0u;
@@ -68,7 +78,7 @@ inline unsigned set_lanes(WideInt mask) {
 #endif
 }
 
-// A vector in space of one path or of sixteen.
+// A vector in space of one path or of many.
 template <class F>
 struct Vec3Of {
     F x, y, z;

@@ -233,7 +233,7 @@ class PathState {
 #endif
 };
 
-// Paths that go on side by side: rays are cast and random numbers drawn for sixteen of them at once. What a path
+// Paths that go on side by side: rays are cast and random numbers drawn for many of them at once. What a path
 // brings depends on none but its own numbers.
 class PathBlock {
   public:
