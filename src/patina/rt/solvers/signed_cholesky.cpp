@@ -1,8 +1,9 @@
 #include "patina/rt/solvers/signed_cholesky.h"
 
 #include <cmath>
+#include <type_traits>
 
-#ifdef __AVX512F__
+#if defined(__AVX512F__) || defined(__FMA__)
 #include <immintrin.h>
 #endif
 
@@ -12,53 +13,77 @@ namespace patina::rt {
 
 namespace {
 
-using Vector8 [[gnu::vector_size(64), gnu::aligned(8), gnu::may_alias]] = double;
+// A register full of doubles, and how many columns of a tile three of them high leave room for the rest.
+#ifdef __AVX512F__
+constexpr int lanes = 8, most_columns = 8;
+#else
+constexpr int lanes = 4, most_columns = 4;
+#endif
+using Vector [[gnu::vector_size(8 * lanes), gnu::aligned(8), gnu::may_alias]] = double;
 
 enum class Update { subtract, replace };
 
 // c - a b or c + a b.
 template <Update update>
-inline Vector8 accumulate(Vector8 a, Vector8 b, Vector8 c) {
-#ifdef __AVX512F__
-    return static_cast<Vector8>(update == Update::subtract ? _mm512_fnmadd_pd(a, b, c) : _mm512_fmadd_pd(a, b, c));
+inline Vector accumulate(Vector a, Vector b, Vector c) {
+#if defined(__AVX512F__)
+    return static_cast<Vector>(update == Update::subtract ? _mm512_fnmadd_pd(a, b, c) : _mm512_fmadd_pd(a, b, c));
+#elif defined(__FMA__)
+    return static_cast<Vector>(update == Update::subtract ? _mm256_fnmadd_pd(a, b, c) : _mm256_fmadd_pd(a, b, c));
 #else
     return update == Update::subtract ? c - a * b : c + a * b;
 #endif
 }
 
-// c - a b^T or a b^T over `depth` columns, for a tile of 8 Rows rows and 8 columns; all column-major. A replaced tile
-// may be the very tile of a, because it is written after everything is read.
-template <int Rows, Update update>
+// c - a b^T or a b^T over `depth` columns, for a tile of Height registers of rows and as many columns; all
+// column-major. Everything is read before anything is written.
+template <int Height, int Columns, Update update>
 inline void tile(int depth, const double* a, int lda, const double* b, int ldb, double* c, int ldc) {
-    Vector8 sum[Rows][8];
-    for (int j = 0; j < 8; ++j)
-        for (int i = 0; i < Rows; ++i) {
+    Vector sum[Height][Columns];
+    for (int j = 0; j < Columns; ++j)
+        for (int i = 0; i < Height; ++i) {
             if constexpr (update == Update::subtract)
-                sum[i][j] = *reinterpret_cast<const Vector8*>(c + j * ldc + 8 * i);
+                sum[i][j] = *reinterpret_cast<const Vector*>(c + j * ldc + lanes * i);
             else
-                sum[i][j] = Vector8{};
+                sum[i][j] = Vector{};
         }
     for (int p = 0; p < depth; ++p, a += lda, b += ldb) {
-        Vector8 column[Rows];
-        for (int i = 0; i < Rows; ++i) column[i] = *reinterpret_cast<const Vector8*>(a + 8 * i);
+        Vector column[Height];
+        for (int i = 0; i < Height; ++i) column[i] = *reinterpret_cast<const Vector*>(a + lanes * i);
 #pragma GCC unroll 8
-        for (int j = 0; j < 8; ++j) {
-            const Vector8 factor = Vector8{} + b[j];
+        for (int j = 0; j < Columns; ++j) {
+            const Vector factor = Vector{} + b[j];
 #pragma GCC unroll 3
-            for (int i = 0; i < Rows; ++i) sum[i][j] = accumulate<update>(column[i], factor, sum[i][j]);
+            for (int i = 0; i < Height; ++i) sum[i][j] = accumulate<update>(column[i], factor, sum[i][j]);
         }
     }
-    for (int j = 0; j < 8; ++j)
-        for (int i = 0; i < Rows; ++i) *reinterpret_cast<Vector8*>(c + j * ldc + 8 * i) = sum[i][j];
+    for (int j = 0; j < Columns; ++j)
+        for (int i = 0; i < Height; ++i) *reinterpret_cast<Vector*>(c + j * ldc + lanes * i) = sum[i][j];
 }
 
-// The same for any multiple of 8 rows.
+// Eight columns of such a tile.
+template <int Height, Update update>
+inline void eight_columns(int depth, const double* a, int lda, const double* b, int ldb, double* c, int ldc) {
+    for (int j = 0; j < 8; j += most_columns)
+        tile<Height, most_columns, update>(depth, a, lda, b + j, ldb, c + j * ldc, ldc);
+}
+
+// The same for any multiple of 8 rows, in tiles of three registers and, for what is left, of two or one.
 template <Update update>
 void rank_update(int rows, int depth, const double* a, int lda, const double* b, int ldb, double* c, int ldc) {
     int i = 0;
-    for (; i + 24 <= rows; i += 24) tile<3, update>(depth, a + i, lda, b, ldb, c + i, ldc);
-    if (rows - i == 16) tile<2, update>(depth, a + i, lda, b, ldb, c + i, ldc);
-    if (rows - i == 8) tile<1, update>(depth, a + i, lda, b, ldb, c + i, ldc);
+    const auto go_on = [&](auto height, int until) {
+        for (; i + lanes * height <= until; i += lanes * height)
+            eight_columns<height, update>(depth, a + i, lda, b, ldb, c + i, ldc);
+    };
+    go_on(std::integral_constant<int, 3>{}, rows - rows % 24);
+    go_on(std::integral_constant<int, 2>{}, rows);
+    go_on(std::integral_constant<int, 1>{}, rows);
+}
+
+// c <- c b^T for a b of 8 x 8: rows by one register at a time, all eight columns at once.
+void multiply_in_place(int rows, const double* b, double* c, int ldc) {
+    for (int i = 0; i < rows; i += lanes) tile<1, 8, Update::replace>(8, c + i, ldc, b, 8, c + i, ldc);
 }
 
 double* at(Eigen::MatrixXd& matrix, int row, int column) {
@@ -126,8 +151,7 @@ bool SignedCholesky::compute(const Eigen::MatrixXd& s, const Eigen::VectorXd& si
         if (!factorize_block(top, d_.data() + k, inverse)) return false;
         l_.block<block, block>(k, k) = top;
         const Block divisor = d_.segment<block>(k).asDiagonal() * inverse;
-        rank_update<Update::replace>(rest, block, at(l_, k + block, k), n, divisor.data(), block, at(l_, k + block, k),
-                                     n);
+        if (rest > 0) multiply_in_place(rest, divisor.data(), at(l_, k + block, k), n);
         for (int j = k; j < k + block; ++j) l_signed_.col(j).tail(rows) = d_[j] * l_.col(j).tail(rows);
     }
     return true;
@@ -138,8 +162,7 @@ void SignedCholesky::solve_right(bool upper) {
     for (int k = 0; k < n; k += block) {
         const int rows = upper ? k + block : n;
         rank_update<Update::subtract>(rows, k, solved_.data(), n, at(l_, k, 0), n, at(solved_, 0, k), n);
-        rank_update<Update::replace>(rows, block, at(solved_, 0, k), n, inverses_[k / block].data(), block,
-                                     at(solved_, 0, k), n);
+        multiply_in_place(rows, inverses_[k / block].data(), at(solved_, 0, k), n);
     }
 }
 

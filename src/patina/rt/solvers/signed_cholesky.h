@@ -1,8 +1,9 @@
 #pragma once
 // Signed Cholesky factorization S = L D L^T, D = diag(+-1), and what the doubling core needs of it, in double.
 //
-// Matrices are column-major n x n with n a multiple of 8, so that every inner loop is the product of a tile of up to 24
-// rows with the transpose of 8 rows: no packing, everything stays in the first cache levels for n <= 256.
+// Matrices are column-major n x n with n a multiple of 8, so that every inner loop is the product of a tile of up to
+// three registers of rows (24 doubles with AVX-512, 12 with AVX2) with the transpose of 8 or 4 rows: no packing,
+// everything stays in the first cache levels for n <= 256.
 
 #include <vector>
 
