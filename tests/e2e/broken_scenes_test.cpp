@@ -53,6 +53,8 @@ TEST_F(BrokenScene, NamesGeometryThatIsNone) {
     EXPECT_PRED2(has, refused(both + shape("<scale value=\"1e-30\"/>", lamp)), "scene.xml:4:");
     EXPECT_PRED2(has, refused(both + shape("<translate x=\"nan\"/>")), "scene.xml:4:");
     EXPECT_PRED2(has, refused(both + shape("<translate x=\"1e200\"/>")), "too far away");
+    // The advice is one that helps: single precision holds the square of an area up to there.
+    EXPECT_PRED2(has, refused(both + shape("<scale value=\"2e11\"/>", lamp)), "keep coordinates below 1e9");
     EXPECT_PRED2(has, refused(both + shape("<matrix value=\"1 0 0 0 1 0 0 0 0 0 1 0 0 0 0 1\"/>")), "scene.xml:4:");
     EXPECT_PRED2(has, refused(both + "<shape type=\"sphere\"><float name=\"radius\" value=\"-1\"/></shape>"), "radius");
 }
@@ -65,6 +67,16 @@ TEST_F(BrokenScene, NamesWhatIsNoFile) {
         EXPECT_PRED2(
             has, refused(both + "<shape type=\"obj\">\n<string name=\"filename\" value=\"" + name + "\"/>\n</shape>"),
             std::string("\"") + name + "\" is no file");
+}
+
+// A float map may hold what no lamp is.
+TEST_F(BrokenScene, NamesSurroundingsThatAreTooBright) {
+    const float pixels[] = {1, 1, 1, 3e38f, 1, 1};
+    write_file(folder() / "sun.pfm",
+               "PF\n2 1\n-1.0\n" + std::string(reinterpret_cast<const char*>(pixels), sizeof pixels));
+    EXPECT_PRED2(has,
+                 refused(camera + "<emitter type=\"envmap\"><string name=\"filename\" value=\"sun.pfm\"/></emitter>"),
+                 "pixel (1, 0) is negative, not finite or too bright");
 }
 
 // A scene that reads well and shows nothing is worth a word.
