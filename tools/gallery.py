@@ -64,7 +64,7 @@ class Gallery:
         self.out.mkdir(parents=True, exist_ok=True)
         self.files = {name: self.out / file for name, file in
                       [("table", "paint.h5"), ("pbsdf", "paint.pbsdf"), ("merl", "paint.binary"), ("studio", "studio.pfm"),
-                       ("bumps", "bumps.pfm")]}
+                       ("bumps", "bumps.pfm"), ("normals", "normals.pfm")]}
         self.failures = []
 
     def run(self, *words):
@@ -80,6 +80,8 @@ class Gallery:
             subprocess.run([sys.executable, self.root / "tools" / "make_studio.py", self.files["studio"]], check=True)
         if not self.files["bumps"].exists():
             write_bumps(self.files["bumps"])
+        if not self.files["normals"].exists():
+            write_normals(self.files["normals"])
         if not self.files["table"].exists():
             self.run("solve", self.root / "examples" / "tio2_on_aluminium.toml", "-o", self.files["table"],
                      "--wavelengths", "400:700:50")
@@ -116,7 +118,8 @@ class Gallery:
 
     @staticmethod
     def figure(images, code, caption, width):
-        tags = "".join(f'<img src="{image.name}" alt="" style="height:{width}px">' for image in images)
+        size = f'style="height:{width}px"' if width else "class=pair"
+        tags = "".join(f'<img src="{image.name}" alt="{html.escape(f"{code} {caption}")}" {size}>' for image in images)
         label = f"<code>{html.escape(code)}</code> " if code else ""
         return (f'<figure style="width:min-content"><div style="white-space:nowrap">{tags}</div>'
                 f"<figcaption>{label}{html.escape(caption)}</figcaption></figure>")
@@ -125,21 +128,24 @@ class Gallery:
     def section(title, text, figures):
         return f"<section><h2>{title}</h2><p>{text}</p><div class=grid>{''.join(figures)}</div></section>"
 
-    def pair(self, picture, code, caption, exposure_ev):
-        """Colour and DoLP side by side; nothing when the picture failed."""
+    def pair(self, picture, code, caption, exposure_ev, circular=False):
+        """Colour and degree of polarization side by side; nothing when the picture failed."""
         if picture is None:
             return ""
-        images = [self.shown(picture, exposure_ev), self.view(picture, "dolp", f"{picture.stem}_dolp", "--map", "inferno")]
-        return self.figure([image for image in images if image], code, caption, 192)
+        second = (self.view(picture, "docp", f"{picture.stem}_docp") if circular else
+                  self.view(picture, "dolp", f"{picture.stem}_dolp", "--map", "inferno"))
+        return self.figure([image for image in (self.shown(picture, exposure_ev), second) if image], code, caption, None)
 
     def models(self):
         figures = []
         for name, caption, model in scenes.MODELS:
             code = "roughconductor" if name == "roughconductor_aniso" else name.replace("_dispersive", "")
-            figures.append(self.pair(self.render(name, scenes.BALL.replace("{bsdf}", model), spp=1.5), code, caption, -0.4))
+            scene = scenes.BALL.replace("{bsdf}", model).replace("</scene>", scenes.BEHIND.get(name, "") + "</scene>")
+            picture = self.render(name, scene, spp=1.5 * scenes.SAMPLES.get(name, 1))
+            figures.append(self.pair(picture, code, caption, -0.4, name in scenes.CIRCULAR))
         return self.section("Reflection models", "A ball on a chequered floor under a small bright lamp in a studio; one "
                             "exposure for all. Left colour, right the degree of linear polarization (black 0, pale "
-                            "yellow 1).", figures)
+                            "yellow 1): black all over where a model depolarizes.", figures)
 
     def integrators(self):
         figures = [self.pair(self.render(f"integrator_{name}", scenes.MIXED_ROOM, "--integrator", name, spp=share), name,
@@ -233,10 +239,20 @@ class Gallery:
                 [(raw, "mosaic", "the raw frame: 1000 electrons a pixel, read noise 5, 8 bits; linear"),
                  (dolp, "demosaic", "DoLP from that frame: noise looks like polarization where it is dark")] if image]
 
+    def missing(self):
+        """Reflection models that the program has and this page does not."""
+        known = self.run("plugins") or {"plugins": []}
+        shown = "".join(model for _, _, model in scenes.MODELS)
+        return [plugin["name"] for plugin in known["plugins"]
+                if plugin["category"] == "bsdf" and f'<bsdf type="{plugin["name"]}">' not in shown]
+
     def make(self):
         start = time.time()
         self.make_inputs()
         page = PAGE_HEAD + self.models() + self.integrators() + self.expressions() + self.neumann() + self.polarization()
+        for name in self.missing():
+            page += f"<p>Not shown: <code>{html.escape(name)}</code></p>"
+            print(f"not shown: {name}", file=sys.stderr)
         for command, problem in self.failures:
             page += f"<p>Failed: <code>patina {html.escape(command)}</code>: {html.escape(problem)}</p>"
             print(f"failed: patina {command}: {problem}", file=sys.stderr)
@@ -256,10 +272,25 @@ def write_bumps(path, width=512, height=256):
                 out.write(struct.pack("<f", -0.006 * depth * depth))
 
 
-PAGE_HEAD = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Patina: gallery</title>
+def write_normals(path, width=512, height=256):
+    """Normals of the same dimples in tangent space, (n + 1)/2."""
+    with open(path, "wb") as out:
+        out.write(f"PF\n{width} {height}\n-1.0\n".encode())
+        for row in range(height):
+            for column in range(width):
+                x, y = (column * 24 / width) % 1 - 0.5, (row * 12 / height) % 1 - 0.5
+                depth = max(0.0, 1 - (x * x + y * y) / 0.16)
+                n = (-2.5 * x * depth, -2.5 * y * depth, 1)
+                length = sum(c * c for c in n) ** 0.5
+                out.write(struct.pack("<3f", *(0.5 + 0.5 * c / length for c in n)))
+
+
+PAGE_HEAD = """<!doctype html><html lang="en"><meta charset="utf-8">
+<meta name="viewport" content="width=device-width"><title>Patina: gallery</title>
 <style>body{font:15px/1.4 system-ui,sans-serif;max-width:1440px;margin:1.5em auto;padding:0 1em;color:#1c1f24;background:#fafafa}
 h2{margin:2em 0 .2em;border-top:1px solid #d6d9de;padding-top:1em}p{max-width:60em;margin:.3em 0 1em}
 .grid{display:flex;flex-wrap:wrap;gap:1.1em}figure{margin:0}figure img{margin-right:4px;background:#000;border-radius:3px}
+.pair{height:180px}@media(max-width:900px){.pair{height:136px}}
 figcaption{font-size:.85rem;color:#4a515c;padding:.15em 0}code{color:#1c1f24;font-weight:600}</style>
 <h1>Gallery</h1>
 """

@@ -16,7 +16,7 @@ CHECKS = ('<texture type="checkerboard" name="{}"><float name="color0" value="1"
           '<transform name="to_uv"><scale x="8" y="4"/></transform></texture>')
 
 # (name of the pictures, what is seen, the model). {table}, {pbsdf}, {merl} stand for files made from a recipe,
-# {bumps} for a picture of heights.
+# {bumps} for a picture of heights, {normals} for one of normals.
 MODELS = [
     ("diffuse", "Lambert", bsdf("diffuse", value("rgb", "reflectance", "0.6, 0.06, 0.05"))),
     ("orennayar", "Oren-Nayar, sigma 35 degrees",
@@ -52,12 +52,23 @@ MODELS = [
     ("bumpmap", "rough copper, dimpled",
      bsdf("bumpmap", '<texture type="bitmap" name="bumpmap"><string name="filename" value="{bumps}"/>'
           '<boolean name="raw" value="true"/></texture>', value("float", "scale", 1), COPPER_ROUGH)),
+    ("normalmap", "rough copper, its normals turned by the same dimples",
+     bsdf("normalmap", '<texture type="bitmap" name="normalmap"><string name="filename" value="{normals}"/>'
+          '<boolean name="raw" value="true"/></texture>', COPPER_ROUGH)),
     ("twosided", "rough copper, both sides alike", bsdf("twosided", COPPER_ROUGH)),
     ("null", "nothing", bsdf("null")),
     ("polarizer", "a linear polarizer wrapped round", bsdf("polarizer", value("float", "theta", 45))),
-    ("retarder", "a quarter-wave film wrapped round", bsdf("retarder", value("float", "delta", 90))),
-    ("circular", "a circular polarizer wrapped round", bsdf("circular")),
+    ("retarder", "an eighth of a wave wrapped round, passed twice before a linear polarizer; right: degree of circular "
+     "polarization", bsdf("retarder", value("float", "delta", 45))),
+    ("circular", "a circular polarizer wrapped round; right: degree of circular polarization", bsdf("circular")),
 ]
+# Beside most models the degree of linear polarization; these make the other one.
+CIRCULAR = {"retarder", "circular"}
+# What stands behind a model that shows nothing by itself.
+BEHIND = {"retarder": '<shape type="rectangle"><transform name="to_world"><scale value="3"/><translate z="-1.4"/></transform>'
+          + bsdf("polarizer", value("float", "theta", 45)) + "</shape>"}
+# Samples over those of the other models, where light comes by narrow ways.
+SAMPLES = {"dielectric_dispersive": 6, "roughdielectric": 3, "thindielectric": 2, "mask": 2}
 
 BALL = """<scene version="3.0.0">
 <integrator type="path"><integer name="max_depth" value="10"/></integrator>

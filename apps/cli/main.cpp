@@ -1,7 +1,11 @@
 // The command line of Patina: a thin skin over patina/jobs. The one place where exceptions become exit codes.
 
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <system_error>
 
 #include "command.h"
 #include <unistd.h>
@@ -61,6 +65,12 @@ std::string explain(const CLI::App& program, const CLI::ParseError& error, int a
     return error.what();
 }
 
+// What was asked for did not arrive. Who closed the pipe, as `head` does, knows.
+int output_lost(int why) {
+    if (why != EPIPE) std::fprintf(stderr, "error: the standard output cannot be written (%s)\n", std::strerror(why));
+    return static_cast<int>(ErrorKind::runtime);
+}
+
 int run(int argc, char** argv) {
     cli::Session session;
     running = &session.cancel;
@@ -114,6 +124,8 @@ int run(int argc, char** argv) {
         return static_cast<int>(ErrorKind::runtime);
     } catch (const std::exception& defect) {
         session.console.end_progress();
+        const auto* failure = dynamic_cast<const std::system_error*>(&defect);
+        if (failure && std::ferror(stdout)) return output_lost(failure->code().value());
         session.console.error(std::string("a defect of patina, please report it: ") + defect.what());
         return static_cast<int>(ErrorKind::runtime);
     }
@@ -123,5 +135,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     patina::keep_freed_memory();
-    return run(argc, argv);
+    const int code = run(argc, argv);
+    if (std::fflush(stdout) != 0 && code == 0) return output_lost(errno);
+    return code;
 }

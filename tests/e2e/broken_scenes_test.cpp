@@ -1,6 +1,7 @@
 // Broken scenes through the program: exit code 3, and words that say what and where.
 
 #include "run_patina.h"
+#include <sys/stat.h>
 
 namespace patina::test {
 namespace {
@@ -52,8 +53,45 @@ TEST_F(BrokenScene, NamesGeometryThatIsNone) {
     EXPECT_PRED2(has, refused(both + shape("<scale value=\"1e-30\"/>", lamp)), "scene.xml:4:");
     EXPECT_PRED2(has, refused(both + shape("<translate x=\"nan\"/>")), "scene.xml:4:");
     EXPECT_PRED2(has, refused(both + shape("<translate x=\"1e200\"/>")), "too far away");
+    // The advice is one that helps: single precision holds the square of an area up to there.
+    EXPECT_PRED2(has, refused(both + shape("<scale value=\"2e11\"/>", lamp)), "keep coordinates below 1e9");
     EXPECT_PRED2(has, refused(both + shape("<matrix value=\"1 0 0 0 1 0 0 0 0 0 1 0 0 0 0 1\"/>")), "scene.xml:4:");
     EXPECT_PRED2(has, refused(both + "<shape type=\"sphere\"><float name=\"radius\" value=\"-1\"/></shape>"), "radius");
+}
+
+// Folders, pipes and devices would be opened and waited for.
+TEST_F(BrokenScene, NamesWhatIsNoFile) {
+    fs::create_directory(folder() / "folder.obj");
+    ASSERT_EQ(::mkfifo((folder() / "pipe.obj").c_str(), 0600), 0);
+    for (const char* name : {"folder.obj", "pipe.obj", "/dev/zero"})
+        EXPECT_PRED2(
+            has, refused(both + "<shape type=\"obj\">\n<string name=\"filename\" value=\"" + name + "\"/>\n</shape>"),
+            std::string("\"") + name + "\" is no file");
+}
+
+// A float map may hold what no lamp is.
+TEST_F(BrokenScene, NamesSurroundingsThatAreTooBright) {
+    const float pixels[] = {1, 1, 1, 3e38f, 1, 1};
+    write_file(folder() / "sun.pfm",
+               "PF\n2 1\n-1.0\n" + std::string(reinterpret_cast<const char*>(pixels), sizeof pixels));
+    EXPECT_PRED2(has,
+                 refused(camera + "<emitter type=\"envmap\"><string name=\"filename\" value=\"sun.pfm\"/></emitter>"),
+                 "pixel (1, 0) is negative, not finite or too bright");
+}
+
+// A scene that reads well and shows nothing is worth a word.
+TEST_F(BrokenScene, WarnsOfABlackPicture) {
+    const auto warning_of = [&](const std::string& body) {
+        write_file(folder() / "scene.xml", "<scene version=\"3.0.0\">\n" + body + "\n</scene>\n");
+        const Outcome outcome = patina("render scene.xml -o out.exr --spp 4 --size 4x4", 60);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err.substr(0, 500);
+        return outcome.err;
+    };
+    const std::string dark = "<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"0\"/></emitter>";
+    const std::string around = "<shape type=\"sphere\"><float name=\"radius\" value=\"10\"/></shape>";
+    EXPECT_PRED2(has, warning_of(camera + dark), "the picture is black");
+    EXPECT_PRED2(has, warning_of(both + around), "the picture is black");
+    EXPECT_FALSE(has(warning_of(both), "the picture is black"));
 }
 
 TEST_F(BrokenScene, SurvivesAbsurdSizes) {

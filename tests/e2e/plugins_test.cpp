@@ -39,5 +39,20 @@ TEST_F(Plugins, OneIsShownByNameAndManyByCategory) {
     EXPECT_THAT(wrong.err, HasSubstr("did you mean \"roughconductor\"?"));
 }
 
+// A script that keeps the output on a full disk learns of it, however little there is to be written; `head`, which has
+// seen enough, is told nothing.
+TEST_F(Plugins, SayThatTheStandardOutputIsLost) {
+    const auto run = [&](const std::string& words) {
+        const std::string command = "{ '" + std::string(PATINA_BINARY) + "' " + words + "; echo $? >&2; } 2>'" +
+                                    (folder() / "err").string() + "'";
+        EXPECT_EQ(std::system(command.c_str()), 0);
+        return read_file(folder() / "err");
+    };
+    EXPECT_EQ(run("plugins >/dev/full"), "error: the standard output cannot be written (No space left on device)\n1\n");
+    EXPECT_EQ(run("plugins diffuse >/dev/full"),
+              "error: the standard output cannot be written (No space left on device)\n1\n");
+    EXPECT_EQ(run("plugins --json | true").find("error"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace patina::test

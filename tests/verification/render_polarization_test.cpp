@@ -110,18 +110,23 @@ TEST(PolarizedReflection, TurnsDiagonalLightIntoEllipticLightOfTheRightSense) {
     placement.block<3, 1>(0, 1) = to_light.cross(Vector3d::UnitX());
     placement.block<3, 1>(0, 2) = to_light;
     placement.block<3, 1>(0, 3) = 3 * to_light;
-    const auto image = render_tree(
-        scene({path(4), needle(from, {0, 0, 0}, {0, 0, 1}, 4),
-               mirror(node("bsdf", "conductor", {uniform("eta", index.real()), uniform("k", index.imag())})),
-               node("shape", "rectangle", {{"to_world", placement}}, {node("bsdf", "polarizer", {{"theta", 35.0}})}),
-               constant_light()}));
+    const Node metal = node("bsdf", "conductor", {uniform("eta", index.real()), uniform("k", index.imag())});
     const Vector3d axis = std::cos(radians(35)) * Vector3d(placement.block<3, 1>(0, 0)) +
                           std::sin(radians(35)) * Vector3d(placement.block<3, 1>(0, 1));
     const Eigen::Vector4d expected = measured(
         reflected(std::sqrt(0.5) * axis.cast<Complex>(), -to_light, {0, 0, 1}, index), view, Vector3d::UnitZ());
     EXPECT_GT(std::abs(expected[3]), 0.1);  // the test would see a wrong sign
-    EXPECT_LT((mean_stokes(image) - expected).norm(), 1e-4) << mean_stokes(image).transpose() << "\n"
-                                                            << expected.transpose();
+    // The front of a mirror, and the back of a two-sided one.
+    const Node seen[] = {mirror(metal), node("shape", "rectangle", {{"to_world", rotate_x(180)}},
+                                             {node("bsdf", "twosided", {}, {metal})})};
+    for (const Node& surface : seen) {
+        const auto image = render_tree(scene(
+            {path(4), needle(from, {0, 0, 0}, {0, 0, 1}, 4), surface,
+             node("shape", "rectangle", {{"to_world", placement}}, {node("bsdf", "polarizer", {{"theta", 35.0}})}),
+             constant_light()}));
+        EXPECT_LT((mean_stokes(image) - expected).norm(), 1e-4) << mean_stokes(image).transpose() << "\n"
+                                                                << expected.transpose();
+    }
 }
 
 // A layer that scatters once, as a table in closed form.

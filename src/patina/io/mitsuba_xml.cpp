@@ -226,6 +226,10 @@ fs::path SceneReader::expect_file(const LocatedText& name) const {
     const fs::path beside = fs::path(name.where.file).parent_path();
     std::string searched = beside.empty() ? "the current folder" : in_quotes(beside.string());
     for (const fs::path& folder : search_folders_) searched += ", " + in_quotes(folder.string());
+    std::error_code status_error;
+    if (name.text.size() < 4096 && fs::exists(beside / name.text, status_error))
+        throw input_error(name.where, fmt::format("{} is no file", in_quotes(name.text)),
+                          "it is a folder, a pipe or a device");
     throw input_error(name.where, fmt::format("there is no file {}", in_quotes(name.text)), "looked in " + searched);
 }
 

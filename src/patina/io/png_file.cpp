@@ -1,10 +1,12 @@
 #include "patina/io/png_file.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <csetjmp>
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 
 #include <fmt/format.h>
@@ -233,7 +235,9 @@ void write_png(const fs::path& path, const Bitmap& image, const PngOptions& opti
                                    static_cast<int>(text.size()));
         good = file && std::fclose(file.release()) == 0 && good;
         if (!good)
-            throw Error(ErrorKind::runtime, fmt::format("{}: cannot be written ({})", path.string(), writer.message));
+            throw Error(ErrorKind::runtime,
+                        fmt::format("{}: cannot be written ({})", path.string(),
+                                    writer.message.empty() ? std::strerror(errno) : writer.message));
     });
 }
 

@@ -171,6 +171,14 @@ bool shows_mirrors(const render::Scene& scene) {
     });
 }
 
+// Lamps of no power or that shine away, a camera inside of something: what nobody renders on purpose.
+bool is_black(const StokesImage& image) {
+    for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel)
+        for (int bin = 0; bin < image.bin_count(); ++bin)
+            if (image.stokes(pixel, bin)[0] != 0) return false;
+    return true;
+}
+
 }  // namespace
 
 render::Pictures render_scene(const RenderRequest& request, const JobControl& control) {
@@ -191,6 +199,10 @@ render::Pictures render_scene(const RenderRequest& request, const JobControl& co
         warnings.emplace_back(
             "light tracing leaves out what mirrors, glass and other surfaces without a spread show the camera; "
             "integrator bidirectional has it");
+    if (!stopped && is_black(pictures.whole))
+        warnings.emplace_back(
+            "the picture is black: no lamp's light reached the camera; look at the lamps' power and outsides, at what "
+            "the camera stands in, and at the integrator's max_depth and hide_emitters");
     const auto add_provenance = [&](StokesImage& image) {
         image.metadata["command"] = request.command;
         image.metadata["scene"] = request.scene.string();

@@ -15,7 +15,7 @@ namespace patina::render {
 
 namespace {
 
-constexpr int wavelengths = 8, energy_samples = 512, matrix_samples = 32;
+constexpr int wavelengths = 8, batches = 16, batch_samples = 256, matrix_samples = 32;
 
 // Collects the worst of one law.
 class Worst {
@@ -57,13 +57,27 @@ class Examiner {
     }
 
   private:
+    // What white surroundings look like in the surface. The noise is that of the batches' means, of all four
+    // components: where every draw is as bright as the next, what differs is which way it is polarized.
     void look(const Wavelengths& w, const Vec3& outgoing, int view) {
-        Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+        Eigen::Vector4d mean = Eigen::Vector4d::Zero();
         double squares = 0;
+        for (int batch = 0; batch < batches; ++batch) {
+            const Eigen::Vector4d seen = batch_mean(w, outgoing, view, batch);
+            mean += seen / batches;
+            squares += seen.squaredNorm() / batches;
+        }
+        const double noise = std::sqrt(std::max(0.0, squares - mean.squaredNorm()) / (batches - 1));
+        // Five standard errors: Student's 15 degrees of freedom, and 160 views a model.
+        energy_.note(mean[0] + mean.tail<3>().norm() - 1 - 5 * noise, w, outgoing);
+    }
+
+    Eigen::Vector4d batch_mean(const Wavelengths& w, const Vec3& outgoing, int view, int batch) {
+        Eigen::Vector4d sum = Eigen::Vector4d::Zero();
         Vec3 x, y;
         orthonormal_basis(outgoing, x, y);
-        for (int i = 0; i < energy_samples; ++i) {
-            Sampler sampler(static_cast<std::uint32_t>(view), i, 17);
+        for (int i = 0; i < batch_samples; ++i) {
+            Sampler sampler(static_cast<std::uint32_t>(view * batches + batch), i, 17);
             const Vec2 uv = sampler.next2();
             const ShadingPoint point{&w, uv, set_.data()};
             BsdfSample s;
@@ -72,17 +86,11 @@ class Examiner {
             const optics::Mueller m = s.weight.matrix(0);
             const double scale = static_cast<double>(s.eta) * s.eta;
             const bool turned = s.weight.form != ScatteringMatrix::Form::depolarizing;
-            const Eigen::Vector4d seen =
-                turned ? Eigen::Vector4d(rotator(rotation_between(outgoing, s.weight.x_out, x)) * m.col(0))
-                       : Eigen::Vector4d(m.col(0));
-            sum += scale * seen;
-            squares += std::pow(scale * seen[0], 2);
-            if (i < matrix_samples) examine(point, outgoing, s, m);
+            sum += scale * (turned ? Eigen::Vector4d(rotator(rotation_between(outgoing, s.weight.x_out, x)) * m.col(0))
+                                   : Eigen::Vector4d(m.col(0)));
+            if (batch == 0 && i < matrix_samples) examine(point, outgoing, s, m);
         }
-        // Three standard errors are noise.
-        const Eigen::Vector4d mean = sum / energy_samples;
-        const double noise = std::sqrt(std::max(0.0, squares / energy_samples - mean[0] * mean[0]) / energy_samples);
-        energy_.note(mean[0] + mean.tail<3>().norm() - 1 - 3 * noise, w, outgoing);
+        return sum / batch_samples;
     }
 
     void examine(const ShadingPoint& point, const Vec3& outgoing, const BsdfSample& s, const optics::Mueller& m) {

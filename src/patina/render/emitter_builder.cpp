@@ -36,6 +36,9 @@ Eigen::Matrix3f rotation_of(const Properties& node) {
     return (m / scale).cast<float>();
 }
 
+// As of every emitter's spectrum (emission_table): single precision holds what is made of it.
+constexpr double brightest_light = 1e15;
+
 EnvironmentEmitter environment(const Properties& node, const SceneResources& resources) {
     const SourceLocation where = node.location_of("filename");
     const std::string file = node.string("filename");
@@ -56,8 +59,9 @@ EnvironmentEmitter environment(const Properties& node, const SceneResources& res
         for (int x = 0; x < e.width; ++x) {
             const float* p = image->pixel(x, y);
             const Eigen::Vector3d rgb(p[0], p[1], p[2]);
-            if (!rgb.allFinite() || rgb.minCoeff() < 0)
-                throw input_error(where, fmt::format("pixel ({}, {}) is negative or not finite", x, y));
+            if (!rgb.allFinite() || rgb.minCoeff() < 0 || rgb.maxCoeff() * std::max(scale, 1.0) > brightest_light)
+                throw input_error(where, fmt::format("pixel ({}, {}) is negative, not finite or too bright", x, y), "",
+                                  "keep it between 0 and 1e15");
             // The sigmoid holds for components up to 1: the brightest becomes one half.
             const double brightest = std::max(2 * rgb.maxCoeff(), 1e-30);
             const SigmoidCoefficients c = sigmoid_coefficients(rgb / brightest);

@@ -1,5 +1,9 @@
 #include "patina/render/emitters.h"
 
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
 #include "patina/core/contract.h"
 
 namespace patina::render {
@@ -22,6 +26,47 @@ struct PowerOf {
     }
     float operator()(const EnvironmentEmitter& e) const {
         return sqr(pi_f * geometry.radius()) * static_cast<float>(e.rows.total()) * e.illuminant.average();
+    }
+};
+
+// A sphere that holds a lamp, and where it shines; nothing for what is at infinity. The power is left to the caller.
+struct BoundsOf {
+    const Geometry& geometry;
+    using Bounds = std::optional<LampBounds>;
+
+    Bounds operator()(const PointEmitter& e) const { return LampBounds{e.position, 0, 0, {}}; }
+    Bounds operator()(const SpotEmitter& e) const {
+        LampBounds bounds{e.position, 0, 0, {}};
+        if (e.cutoff_rad < 0.5f * pi_f) bounds.cone = {e.axis, e.cutoff_rad, spot_edge_rad};
+        return bounds;
+    }
+    Bounds operator()(const AreaEmitter& e) const {
+        const Shape& shape = geometry.shapes[e.shape];
+        if (shape.is_mesh) return of_mesh(geometry.meshes[shape.first]);
+        LampBounds bounds{Vec3::Zero(), 0, 0, {}};
+        for (int i = 0; i < shape.count; ++i) bounds.centre += geometry.analytic[shape.first + i].o / shape.count;
+        for (int i = 0; i < shape.count; ++i) {
+            const AnalyticShape& s = geometry.analytic[shape.first + i];
+            const float reach = s.kind == AnalyticShape::Kind::sphere ? s.radius : s.a.norm() + s.b.norm();
+            bounds.radius = std::max(bounds.radius, (s.o - bounds.centre).norm() + reach);
+            if (shape.count == 1 && s.kind != AnalyticShape::Kind::sphere)
+                bounds.cone = {s.flipped ? Vec3(-s.n) : s.n, 0, 0.5f * pi_f};
+        }
+        return bounds;
+    }
+    Bounds operator()(const DirectionalEmitter&) const { return {}; }
+    Bounds operator()(const ConstantEmitter&) const { return {}; }
+    Bounds operator()(const EnvironmentEmitter&) const { return {}; }
+
+  private:
+    // Light that falls off to nothing at the cutoff may be cut off a rounding error beyond it.
+    static constexpr float spot_edge_rad = 1e-3f;
+
+    // A mesh may shine anywhere.
+    static LampBounds of_mesh(const MeshShape& m) {
+        Vec3 low = m.mesh->positions.front(), high = low;
+        for (const Vec3& p : m.mesh->positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
+        return {0.5f * (low + high), 0.5f * (high - low).norm(), 0, {}};
     }
 };
 
@@ -92,34 +137,61 @@ float emitted_power(const Emitter& emitter, const Geometry& geometry) {
 }
 
 Lights::Lights(std::vector<Emitter> emitters, const Geometry& geometry, std::vector<EmitterPolarization> states)
-    : emitters_(std::move(emitters)), states_(std::move(states)), slot_(emitters_.size(), -1) {
+    : emitters_(std::move(emitters)),
+      states_(std::move(states)),
+      slot_(emitters_.size(), -1),
+      lamp_(emitters_.size(), -1) {
     states_.resize(emitters_.size());
     for (const EmitterPolarization& state : states_) any_polarized_ |= state.polarized();
+    for (int i = 0; i < static_cast<int>(emitters_.size()); ++i)
+        if (std::holds_alternative<ConstantEmitter>(emitters_[i]) ||
+            std::holds_alternative<EnvironmentEmitter>(emitters_[i]))
+            environments_.push_back(i);
+    prepare_choice(geometry);
+}
+
+void Lights::prepare_choice(const Geometry& geometry) {
     std::vector<double> powers;
+    std::vector<LampBounds> lamps;
+    int slot_of_lamps = -1;
+    const auto somewhere = [&](const Emitter& e) { return std::visit(BoundsOf{geometry}, e).has_value(); };
+    const bool many = std::ranges::count_if(emitters_, somewhere) >= many_lamps;
     for (int i = 0; i < static_cast<int>(emitters_.size()); ++i) {
-        const bool constant = std::holds_alternative<ConstantEmitter>(emitters_[i]);
-        if (constant || std::holds_alternative<EnvironmentEmitter>(emitters_[i])) environments_.push_back(i);
-        if (constant) continue;
-        // A dark light stays in the list with no chance to be drawn, so that hits on it have a density (0).
+        if (std::holds_alternative<ConstantEmitter>(emitters_[i])) continue;
         const double power = emitted_power(emitters_[i], geometry);
-        slot_[i] = static_cast<int>(sampled_.size());
-        sampled_.push_back(i);
-        powers.push_back(power);
+        const std::optional<LampBounds> bounds = many ? std::visit(BoundsOf{geometry}, emitters_[i]) : std::nullopt;
+        if (!bounds || slot_of_lamps < 0) {
+            if (bounds) slot_of_lamps = static_cast<int>(sampled_.size());
+            sampled_.push_back(bounds ? -1 : i);
+            powers.push_back(0);
+        }
+        slot_[i] = bounds ? slot_of_lamps : static_cast<int>(sampled_.size()) - 1;
+        powers[slot_[i]] += power;
+        if (!bounds) continue;
+        lamp_[i] = static_cast<int>(lamps_.size());
+        lamps_.push_back(i);
+        lamps.push_back(*bounds);
+        lamps.back().power = static_cast<float>(power);
     }
-    double total = 0;
-    for (double power : powers) total += power;
-    if (total > 0) {
-        choice_ = DiscreteDistribution(powers);
-    } else if (!powers.empty()) {
-        choice_ = DiscreteDistribution(std::vector<double>(powers.size(), 1.0));
-    }
+    // Dark lights stay, with no chance to be drawn, so that hits on them have a density (0).
+    if (std::accumulate(powers.begin(), powers.end(), 0.0) <= 0) powers.assign(powers.size(), 1.0);
+    if (!powers.empty()) choice_ = DiscreteDistribution(powers);
+    tree_ = LampTree(lamps);
 }
 
 bool Lights::sample(const Geometry& geometry, const Vec3& from, const Wavelengths& w, float u, const Vec2& u2,
                     LightSample& sample) const {
     const DiscreteDistribution::Choice choice = choice_.sample(u);
-    if (!sample_emitter(sampled_[choice.index], geometry, from, w, u2, sample)) return false;
-    sample.pdf *= choice.probability;
+    int emitter = sampled_[choice.index];
+    float probability = choice.probability;
+    if (emitter < 0) {
+        const LampTree::Choice lamp = tree_.choose(from, choice.remainder);
+        if (lamp.lamp < 0) return false;
+        emitter = lamps_[lamp.lamp];
+        probability *= lamp.probability;
+    }
+    if (!sample_emitter(emitter, geometry, from, w, u2, sample)) return false;
+    sample.pdf *= probability;
     return true;
 }
 

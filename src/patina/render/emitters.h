@@ -8,6 +8,7 @@
 #include "patina/render/bsdf.h"
 #include "patina/render/emitter_polarization.h"
 #include "patina/render/geometry.h"
+#include "patina/render/lamp_tree.h"
 #include "patina/render/spectrum.h"
 
 namespace patina::render {
@@ -106,11 +107,13 @@ class Lights {
     // Density with which sample() finds a point of an emitting surface, per solid angle at `from`.
     float surface_pdf(int emitter, const Geometry& geometry, const Hit& hit, const SurfacePoint& at,
                       const Vec3& from) const {
-        return choice_.probability(slot_[emitter]) * geometry.shape_pdf(hit, at, from);
+        return choice_probability(emitter, from) * geometry.shape_pdf(hit, at, from);
     }
-    // Probability with which sample() chooses this emitter.
-    float choice_probability(int emitter) const {
-        return slot_[emitter] < 0 ? 0.0f : choice_.probability(slot_[emitter]);
+    // Probability with which sample() chooses this emitter for a point.
+    float choice_probability(int emitter, const Vec3& from) const {
+        if (slot_[emitter] < 0) return 0;
+        const float chosen = choice_.probability(slot_[emitter]);
+        return lamp_[emitter] < 0 ? chosen : chosen * tree_.probability(lamp_[emitter], from);
     }
     const std::vector<int>& environments() const { return environments_; }
     // What comes from infinity: visit(radiance, density in sample() (0: never sampled), emitter).
@@ -135,13 +138,21 @@ class Lights {
     const std::vector<Emitter>& all() const { return emitters_; }
 
   private:
+    void prepare_choice(const Geometry& geometry);
+
     std::vector<Emitter> emitters_;
     std::vector<EmitterPolarization> states_;  // of the emitters
     bool any_polarized_ = false;
-    std::vector<int> sampled_;       // emitters that sample() draws from
-    std::vector<int> slot_;          // of an emitter in sampled_, -1 for none
     std::vector<int> environments_;  // emitters at infinity that paths run into
-    DiscreteDistribution choice_;    // over sampled_, by power
+    // sample() chooses by power. Where lamps that are somewhere are many, all of them are one choice, and the tree
+    // chooses among them; few are stratified better than they can be chosen.
+    static constexpr int many_lamps = 17;
+    DiscreteDistribution choice_;
+    std::vector<int> sampled_;  // emitter of a choice, -1 for the lamps
+    std::vector<int> slot_;     // choice that an emitter belongs to, -1 for none
+    LampTree tree_;
+    std::vector<int> lamps_;  // emitters of the tree
+    std::vector<int> lamp_;   // of an emitter in the tree, -1 for none
 };
 
 // The emitter a plugin names (not `area`, which belongs to its shape).

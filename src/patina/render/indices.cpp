@@ -45,9 +45,19 @@ Spectrum part(const optics::OpticalConstants& constants, bool imaginary) {
 
 Spectrum index_table(const SpectrumSpec& spec, const SourceLocation& where) {
     Spectrum spectrum = property_table(spec, where);
-    if (!(spectrum.smallest() >= 1e-3f))
+    if (!(spectrum.smallest() >= 0.1f && spectrum.largest() <= 10))
         throw input_error(where, "refractive index out of range",
-                          fmt::format("it goes down to {}", spectrum.smallest()), "keep it positive");
+                          fmt::format("it spans {} .. {}", spectrum.smallest(), spectrum.largest()),
+                          "keep it between 0.1 and 10");
+    return spectrum;
+}
+
+// n or k of a metal: far beyond any, and single precision holds its fourth power.
+Spectrum metal_table(const SpectrumSpec& spec, const SourceLocation& where) {
+    Spectrum spectrum = property_table(spec, where);
+    if (!(spectrum.largest() <= 1e6f))
+        throw input_error(where, "index of the metal out of range", fmt::format("it goes up to {}", spectrum.largest()),
+                          "keep it at 1e6 or below");
     return spectrum;
 }
 
@@ -72,7 +82,7 @@ ConductorIndex conductor_index(const Properties& node, const BsdfBuilder& builde
     const auto n = node.spectrum("eta"), k = node.spectrum("k");
     if (n || k) {
         if (!n || !k) throw input_error(node.where, "\"eta\" and \"k\" must be given together");
-        return {property_table(*n, node.location_of("eta")), property_table(*k, node.location_of("k"))};
+        return {metal_table(*n, node.location_of("eta")), metal_table(*k, node.location_of("k"))};
     }
     const std::string name = node.string("material", "Cu");
     if (name == "none") return {Spectrum(0.0f), Spectrum(1.0f)};

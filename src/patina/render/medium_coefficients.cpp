@@ -101,7 +101,7 @@ ReducedCoefficients reduced_coefficients(const Properties& node, const SceneReso
         const double g = node.number("g", 0);
         if (!(std::abs(g) < 1))
             throw input_error(node.location_of("g"), "mean cosine out of range", fmt::format("it is {}", g),
-                              "keep it between -1 and 1");
+                              "keep it above -1 and below 1");
         result.absorption = scaled(coefficient(node, "sigma_a", 0.1f), scale);
         result.scattering = scaled(coefficient(node, "sigma_s", 10.0f), scale * (1 - g));
     }

@@ -72,7 +72,7 @@ class SceneBuilder {
             const std::int64_t count = sampler->integer("sample_count", 16);
             if (count < 1 || count > (1 << 30))
                 throw input_error(sampler->location_of("sample_count"), "sample_count out of range",
-                                  fmt::format("it is {}", count), "keep it at 1 or above");
+                                  fmt::format("it is {}", count), "keep it between 1 and 1073741824");
             scene_->samples_per_pixel = static_cast<int>(count);
             scene_->seed = static_cast<std::uint64_t>(sampler->integer("seed", 0));
             sampler->boolean("jitter", true);

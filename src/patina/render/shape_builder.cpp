@@ -151,7 +151,7 @@ void expect_sane_size(const Properties& node, const Shape& shape, const Geometry
             reach = std::max({reach, list[i].o.cwiseAbs().maxCoeff(), list[i].radius});
     if (!(reach < largest_coordinate) || !(shape.area < sqr(largest_coordinate)))
         throw input_error(node.where, fmt::format("the {} is too large or too far away", node.type), "",
-                          "keep coordinates below 1e12");
+                          "keep coordinates below 1e9");  // areas are squared too
     if (!(shape.area > smallest_area))
         throw input_error(node.where, fmt::format("the {} is too small", node.type),
                           fmt::format("its area is {}", shape.area));

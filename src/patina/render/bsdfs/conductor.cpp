@@ -10,8 +10,8 @@ PluginDescriptor Conductor::describe() {
         "conductor",
         "Smooth metal with a complex index; polarizes and retards.",
         {{"material", "string", "", "Cu", "", "built-in material or n,k file; \"none\" is a perfect mirror"},
-         {"eta", "spectrum", "", "", ">= 0", "real part of the index, instead of a material"},
-         {"k", "spectrum", "", "", ">= 0", "imaginary part of the index, instead of a material"},
+         {"eta", "spectrum", "", "", "0 .. 1e6", "real part of the index, instead of a material"},
+         {"k", "spectrum", "", "", "0 .. 1e6", "imaginary part of the index, instead of a material"},
          {"specular_reflectance", "spectrum or texture", "", "1", "0 .. 1", "factor on reflection (not physical)"}}};
 }
 

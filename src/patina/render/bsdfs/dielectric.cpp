@@ -9,8 +9,9 @@ PluginDescriptor Dielectric::describe() {
         "bsdf",
         "dielectric",
         "Smooth interface between two transparent media; dispersive when an index names a material.",
-        {{"int_ior", "number, medium, material or spectrum", "", "bk7", "> 0", "index on the side the normal leaves"},
-         {"ext_ior", "number, medium, material or spectrum", "", "air", "> 0", "index on the side of the normal"},
+        {{"int_ior", "number, medium, material or spectrum", "", "bk7", "0.1 .. 10",
+          "index on the side the normal leaves"},
+         {"ext_ior", "number, medium, material or spectrum", "", "air", "0.1 .. 10", "index on the side of the normal"},
          {"specular_reflectance", "spectrum or texture", "", "1", "0 .. 1", "factor on reflection (not physical)"},
          {"specular_transmittance", "spectrum or texture", "", "1", "0 .. 1", "factor on refraction (not physical)"}}};
 }

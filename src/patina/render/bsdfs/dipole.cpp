@@ -82,19 +82,20 @@ void Dipole::enter(const Wavelengths& w, const Vec3& incident, ScatteringMatrix&
 }
 
 PluginDescriptor Dipole::describe() {
-    return {"bsdf",
-            "dipole",
-            "Translucent matter under a smooth surface, by diffusion (BSSDF in the volumetric integrator).",
-            {{"int_ior", "number, medium, material or spectrum", "", "1.5; a recipe's binder", "> 0", "index inside"},
-             {"ext_ior", "number, medium, material or spectrum", "", "air", "> 0", "index on the side of the normal"},
-             {"sigma_a", "spectrum", "1/scene unit", "0.1", ">= 0", "absorption"},
-             {"sigma_s", "spectrum", "1/scene unit", "10", "> 0", "scattering"},
-             {"g", "number", "", "0", "-1 .. 1", "mean cosine of the scattering angle"},
-             {"scale", "number", "", "1", "> 0", "factor on the coefficients"},
-             {"filename", "path", "", "", "", "a recipe (.toml) whose layer gives coefficients and index"},
-             {"layer", "integer", "", "the topmost that scatters", ">= 0", "of the recipe, counted from the top"},
-             {"scene_unit_um", "number", "um", "1", "> 0", "of a recipe: what a unit of length stands for"},
-             {"specular_reflectance", "spectrum or texture", "", "1", "0 .. 1", "factor on the surface"}}};
+    return {
+        "bsdf",
+        "dipole",
+        "Translucent matter under a smooth surface, by diffusion (BSSDF in the volumetric integrator).",
+        {{"int_ior", "number, medium, material or spectrum", "", "1.5; a recipe's binder", "0.1 .. 10", "index inside"},
+         {"ext_ior", "number, medium, material or spectrum", "", "air", "0.1 .. 10", "index on the side of the normal"},
+         {"sigma_a", "spectrum", "1/scene unit", "0.1", ">= 0", "absorption"},
+         {"sigma_s", "spectrum", "1/scene unit", "10", "> 0", "scattering"},
+         {"g", "number", "", "0", "-1 .. 1", "mean cosine of the scattering angle"},
+         {"scale", "number", "", "1", "> 0", "factor on the coefficients"},
+         {"filename", "path", "", "", "", "a recipe (.toml) whose layer gives coefficients and index"},
+         {"layer", "integer", "", "the topmost that scatters", ">= 0", "of the recipe, counted from the top"},
+         {"scene_unit_um", "number", "um", "1", "> 0", "of a recipe: what a unit of length stands for"},
+         {"specular_reflectance", "spectrum or texture", "", "1", "0 .. 1", "factor on the surface"}}};
 }
 
 Dipole Dipole::build(const Properties& node, const BsdfBuilder& builder) {

@@ -28,6 +28,13 @@ bool Lafortune::sample(const ShadingPoint& point, const Vec3& outgoing, float u,
     return true;
 }
 
+// The products in double precision, and of true unit vectors: a sharp lobe magnifies a rounding error by its exponent.
+float Lafortune::Lobe::height(const Vec3& outgoing, const Vec3& incident) const {
+    const Eigen::Vector3d o = outgoing.cast<double>(), i = incident.cast<double>();
+    const double cos = o.cwiseProduct(i).dot(c.cast<double>()) / std::sqrt(o.squaredNorm() * i.squaredNorm());
+    return cos > 0 ? static_cast<float>((exponent + 2) * 0.5 * inv_pi_f * std::pow(cos, exponent)) : 0.0f;
+}
+
 bool Lafortune::evaluate(const ShadingPoint& point, const Vec3& outgoing, const Vec3& incident,
                          BsdfValue& value) const {
     if (outgoing.z() <= 0 || incident.z() <= 0) return false;
@@ -40,8 +47,7 @@ bool Lafortune::evaluate(const ShadingPoint& point, const Vec3& outgoing, const 
         if (!(length > 0)) continue;
         const float density = cosine_lobe_density(axis / length, lobe.exponent, incident);
         value.pdf += lobe.share * density;
-        const float height = density * std::pow(length, lobe.exponent) * (lobe.exponent + 2) / (lobe.exponent + 1);
-        f += lobe.weight.at(w, point.uv) * height;
+        f += lobe.weight.at(w, point.uv) * lobe.height(outgoing, incident);
     }
     value.f.set_depolarizing(f * incident.z());
     return true;

@@ -22,6 +22,9 @@ struct Lafortune {
         Vec3 c;  // largest component of size 1
         float exponent = 1, share = 0;
         Texture weight;
+
+        // Of weight 1, in 1/sr.
+        float height(const Vec3& outgoing, const Vec3& incident) const;
     };
     Texture diffuse_reflectance;
     float diffuse_share = 1;

@@ -9,16 +9,23 @@ namespace patina::render {
 
 namespace {
 
-// Share of diffuse light inside a body of relative index eta that its surface reflects: int_0^1 R(mu) d(mu^2), by the
-// midpoint rule in mu^2 (400 points: 1e-4).
-double diffuse_internal_reflectance(double eta) {
+// Share of diffuse light that a surface reflects into a medium from which the other has the relative index eta >= 1:
+// int_0^1 R(mu) d(mu^2), by the midpoint rule in mu^2 (400 points: 1e-4).
+double diffuse_reflectance_outside(double eta) {
     constexpr int points = 400;
     double total = 0;
     for (int i = 0; i < points; ++i) {
         const auto mu = static_cast<float>(std::sqrt((i + 0.5) / points));
-        total += fresnel_dielectric(mu, splat(static_cast<float>(1 / eta))).reflection.a[0] / points;
+        total += fresnel_dielectric(mu, splat(static_cast<float>(eta))).reflection.a[0] / points;
     }
     return total;
+}
+
+// The same inside the body of relative index eta. From the denser side total reflection hides all but a cone of light
+// that narrows as 1 / eta^2; both sides let the same etendue through (Kubelka 1954).
+double diffuse_internal_reflectance(double eta) {
+    if (eta <= 1) return diffuse_reflectance_outside(1 / eta);
+    return 1 - (1 - diffuse_reflectance_outside(eta)) / (eta * eta);
 }
 
 }  // namespace
@@ -131,8 +138,8 @@ namespace {
 
 std::vector<ParameterDescriptor> plastic_parameters(const char* interior, bool rough, bool nonlinear) {
     std::vector<ParameterDescriptor> all = {
-        {"int_ior", "number, medium, material or spectrum", "", interior, "> 0", "index of the body"},
-        {"ext_ior", "number, medium, material or spectrum", "", "air", "> 0", "index on the side of the normal"},
+        {"int_ior", "number, medium, material or spectrum", "", interior, "0.1 .. 10", "index of the body"},
+        {"ext_ior", "number, medium, material or spectrum", "", "air", "0.1 .. 10", "index on the side of the normal"},
         {"diffuse_reflectance", "spectrum or texture", "", "0.5", "0 .. 1", "albedo of the body, surface taken off"},
         {"specular_reflectance", "spectrum or texture", "", "1", "0 .. 1", "factor on the surface (not physical)"}};
     if (nonlinear)

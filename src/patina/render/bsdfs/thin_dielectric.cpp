@@ -53,8 +53,8 @@ PluginDescriptor ThinDielectric::describe() {
     return {"bsdf",
             "thindielectric",
             "Thin pane with both its faces, polarized.",
-            {{"int_ior", "number, medium, material or spectrum", "", "bk7", "> 0", "index of the pane"},
-             {"ext_ior", "number, medium, material or spectrum", "", "air", "> 0", "index on both its sides"},
+            {{"int_ior", "number, medium, material or spectrum", "", "bk7", "0.1 .. 10", "index of the pane"},
+             {"ext_ior", "number, medium, material or spectrum", "", "air", "0.1 .. 10", "index on both its sides"},
              {"specular_reflectance", "spectrum or texture", "", "1", "0 .. 1", "factor on reflection (not physical)"},
              {"specular_transmittance", "spectrum or texture", "", "1", "0 .. 1",
               "factor on transmission (not physical)"}}};

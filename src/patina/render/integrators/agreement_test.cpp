@@ -74,6 +74,29 @@ TEST(Agreement, PolarizedLamps) {
     for (int component : {1, 2, 3}) EXPECT_GT(significance(by_path, component), 10) << component;
 }
 
+// Many lamps, which are chosen by where the light falls: panes that face away, candles and balls alike.
+TEST(Agreement, ManyLamps) {
+    std::vector<Node> all = {camera(), floor(0.6), wall(node("bsdf", "roughconductor", {{"alpha", 0.3}})),
+                             ball(0.5, node("bsdf", "roughplastic", {{"alpha", 0.2}}))};
+    for (int i = 0; i < 24; ++i) {
+        const double x = -1.5 + 0.6 * (i % 6), y = -0.8 + 0.8 * (i / 6), z = 1.2 + 0.4 * (i % 3);
+        const Eigen::Matrix4d to_world =
+            translate({x, y, z}) * rotate_x(i % 4 == 1 ? 0 : 150) * scale(0.15, 0.15, 0.15);
+        if (i % 3 == 0)
+            all.push_back(
+                node("emitter", "point", {{"position", Vector3d(x, y, z)}, uniform("intensity", 0.1 + 0.02 * i)}));
+        else
+            all.push_back(node("shape", i % 3 == 1 ? "rectangle" : "sphere", {{"to_world", to_world}},
+                               {node("emitter", "area", {uniform("radiance", 1 + 0.1 * i)})}));
+    }
+    const auto lit = build_scene(*scene(std::move(all)), {});
+    const Measurements by_path = measure(*lit, "path", 128), by_both = measure(*lit, "bidirectional", 64, "", 100);
+    expect_agreement(by_path, by_both, "path, bidirectional");
+    expect_agreement(by_path, measure(*lit, "light", 256, "", 200), "path, light");
+    expect_agreement(by_path, measure(*lit, "volumetric", 128, "", 300), "path, volumetric");
+    EXPECT_LT(relative_error(by_path), 0.02);
+}
+
 Node normal_mapped(Node bsdf) {
     const Node map = node("bsdf", "normalmap", {},
                           {std::move(bsdf), node("texture", "bitmap", {{"filename", std::string("waves")}})});

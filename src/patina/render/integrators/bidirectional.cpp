@@ -90,7 +90,7 @@ class Joiner {
                     radiance = map.radiance(c_.w, direction);
                     map_pdf = map.pdf(direction);
                 }
-                add(e, radiance, origin_pdf, ray_pdf, lights.choice_probability(e) * map_pdf);
+                add(e, radiance, origin_pdf, ray_pdf, lights.choice_probability(e, camera_[t - 2].position()) * map_pdf);
             }
         } else if (v.emitter >= 0) {
             float origin_pdf = 0, ray_pdf = 0;
@@ -201,7 +201,7 @@ class Joiner {
         if (light_.size() < 2) return;
         const Lights& lights = c_.scene().lights;
         const PathVertex &lamp = light_[0], &first = light_[1];
-        const float choice = lights.choice_probability(lamp.emitter);
+        const float choice = lights.choice_probability(lamp.emitter, first.position());
         const Emitter& emitter = lights.all()[lamp.emitter];
         if (const auto* map = std::get_if<EnvironmentEmitter>(&emitter)) {
             direct_pdf_ = choice * map->pdf(first.to_previous);

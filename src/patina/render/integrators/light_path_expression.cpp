@@ -30,6 +30,17 @@ struct Part {
     Positions first, last;
 };
 
+// A window of a text and a caret under one of its places.
+std::string pointed_at(std::string_view text, std::size_t index) {
+    constexpr std::size_t margin = 30;
+    const std::size_t begin = index > margin ? index - margin : 0;
+    std::string shown(text.substr(begin, 2 * margin));
+    for (char& c : shown)
+        if (std::isprint(static_cast<unsigned char>(c)) == 0) c = '?';
+    const std::string_view before = begin > 0 ? "..." : "", after = begin + shown.size() < text.size() ? "..." : "";
+    return fmt::format("    {}{}{}\n    {:>{}}", before, shown, after, '^', before.size() + index - begin + 1);
+}
+
 class Parser {
   public:
     Parser(const LightPathExpression& expression, std::vector<Position>& positions)
@@ -43,8 +54,8 @@ class Parser {
         return whole;
     }
     [[noreturn]] void fail(std::size_t index, const std::string& problem) const {
-        throw Error(ErrorKind::usage, fmt::format("light-path expression {}=\"{}\", column {}: {}", expression_.name,
-                                                  text_, index + 1, problem));
+        throw Error(ErrorKind::usage, fmt::format("light-path expression {}, column {}: {}\n{}", expression_.name,
+                                                  index + 1, problem, pointed_at(text_, index)));
     }
 
   private:

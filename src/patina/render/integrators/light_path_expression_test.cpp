@@ -79,6 +79,10 @@ TEST(LightPathExpression, RefusesWithTheColumn) {
     EXPECT_NE(refusal("LDLE").find("column 3"), std::string::npos);
     EXPECT_NE(refusal("DDE").find("column 1"), std::string::npos);
     EXPECT_NE(refusal("").find("column 1"), std::string::npos);
+    // A caret under the place, and no more of a long text than a line.
+    EXPECT_TRUE(refusal("L(S|DE").ends_with("\n    L(S|DE\n     ^")) << refusal("L(S|DE");
+    EXPECT_TRUE(refusal("").ends_with("\n    \n    ^")) << refusal("");
+    EXPECT_LT(refusal("L" + std::string(100'000, 'D') + "E").size(), 250u);
     EXPECT_NE(refusal(std::string(10'000, '(')).find("longer than"), std::string::npos);
     // 2^n states: no hang.
     EXPECT_NE(refusal("E(D|S)*D" + std::string(200, '.') + "L").find("too complex"), std::string::npos);

@@ -57,7 +57,7 @@ PluginDescriptor MiePhase::describe() {
             {{"material", "material", "", "", "", "of the spheres; or eta and k"},
              {"eta", "spectrum", "", "", "> 0", "real part of the spheres' index"},
              {"k", "spectrum", "", "", ">= 0", "imaginary part"},
-             {"binder", "number, medium, material or spectrum", "", "vacuum", "> 0", "index around the spheres"},
+             {"binder", "number, medium, material or spectrum", "", "vacuum", "0.1 .. 10", "index around the spheres"},
              {"distribution", "string", "", "mono", "mono, lognormal, gamma", "of the radii"},
              {"weighting", "string", "", "number", "number, area, volume", "what the distribution counts"},
              {"radius_um", "number", "um", "", "> 0", "mono"},
