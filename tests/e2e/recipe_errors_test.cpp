@@ -105,11 +105,11 @@ INSTANTIATE_TEST_SUITE_P(Recipes, BadRecipes, ::testing::ValuesIn(bad_recipes),
 
 class CoefficientFiles : public PatinaTest {
   protected:
-    Outcome field_with(const std::string& coefficients) {
+    Outcome field_with(const std::string& coefficients, const std::string& options = "") {
         write_file(folder() / "c.csv", coefficients);
         write_file(folder() / "r.toml",
                    "[[layers]]\noptical_thickness = 1\nsingle_scattering_albedo = 0.9\nexpansion = \"c.csv\"\n");
-        return patina("field r.toml --theta-i-deg 30", 60);
+        return patina("field r.toml --theta-i-deg 30 " + options, 60);
     }
 };
 
@@ -130,6 +130,31 @@ TEST_F(CoefficientFiles, BrokenOnesAreRefusedWithLineAndColumn) {
         EXPECT_EQ(outcome.exit_code, 3) << text << outcome.err;
         EXPECT_THAT(outcome.err, HasSubstr(message)) << text;
     }
+}
+
+// Rayleigh's coefficients with beta1 in the column of alpha2: numbers that look right and are none of any matter.
+TEST_F(CoefficientFiles, MistakenColumnsAreRefusedAndCutOffSeriesAreReported) {
+    const std::string header = "l,alpha1,alpha2,alpha3,alpha4,beta1,beta2\n";
+    const Outcome mistaken = field_with(header + "0,1,0,0,0,0,0\n1,0,0,0,1.5,0,0\n2,0.5,1.2247,0,0,3,0\n");
+    EXPECT_EQ(mistaken.exit_code, 3);
+    EXPECT_THAT(mistaken.err, HasSubstr("c.csv:2:1: scattered by 90 degrees"));
+
+    const Outcome slightly = field_with(header + "0,1,0,0,0,0,0\n1,0,0,0,1.5,0,0\n2,0.5,3,0,0,1.3,0\n");
+    EXPECT_EQ(slightly.exit_code, 0);
+    EXPECT_THAT(slightly.err, HasSubstr("more polarization than intensity (by 0.092"));  // 1.5 (1.3 / 1.2247 - 1)
+
+    const Outcome exact = field_with(header + "0,1,0,0,0,0,0\n1,0,0,0,1.5,0,0\n2,0.5,3,0,0,1.2247449,0\n");
+    EXPECT_EQ(exact.exit_code, 0);
+    EXPECT_EQ(exact.err, "");
+}
+
+// Henyey and Greenstein's g = 0.95 at 8 streams: f = g^16 = 0.44 counts as unscattered, and the user is told.
+TEST_F(CoefficientFiles, AForwardPeakCutOffIsReported) {
+    std::string text = "l,alpha1,alpha2,alpha3,alpha4,beta1,beta2\n";
+    for (int l = 0; l <= 200; ++l) text += fmt::format("{},{},0,0,0,0,0\n", l, (2 * l + 1) * std::pow(0.95, l));
+    const Outcome outcome = field_with(text, "--scalar --streams 8 --json");
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.out, HasSubstr("layer 0: 0.44 of its scattering, the forward peak"));
 }
 
 class CommandLine : public PatinaTest {};

@@ -65,6 +65,17 @@ void check_incidence(const FieldJob& job) {
     check_angles(job.phi_deg, 360.0, "--phi-deg");
 }
 
+// A law of scattering that matter cannot have makes light without bounds.
+void expect_finite(const std::vector<FieldValue>& radiance) {
+    for (const FieldValue& value : radiance)
+        if (!value.stokes.allFinite() || (value.standard_error && !value.standard_error->allFinite()))
+            throw Error(
+                ErrorKind::check,
+                fmt::format("the radiance at tau {:g}, {:g} degrees is not a finite number; check the expansion "
+                            "coefficients, or try another solver",
+                            value.optical_depth, value.theta_deg));
+}
+
 // Enough for six digits of the field: the phase function exactly, and the angular field to rounding of printed tables.
 int chosen_streams(const FieldJob& job, const rt::Problem& problem) {
     if (job.streams != 0) {
@@ -106,6 +117,9 @@ FieldResult field(const coating::Recipe& recipe, const FieldJob& job, const JobC
     options.progress = [&](double part) { control.report({"solving", 0, 1, "", part}); };
     const rt::Field computed = solver.field(problem, request, options);
     control.report({"solving", 1, 1, ""});
+    result.diagnostics = computed.diagnostics;
+    const std::vector<std::string>& said = result.diagnostics.notes;
+    result.notes.insert(result.notes.end(), said.begin(), said.end());
 
     // List the depths in order, without the directions that only exist inside when nothing was asked for inside.
     for (size_t d = 0; d < request.optical_depths.size(); ++d)
@@ -121,7 +135,7 @@ FieldResult field(const coating::Recipe& recipe, const FieldJob& job, const JobC
         }
     result.specular_surface = rt::specular_surface(problem, request.mu_i);
     result.specular_coherent = rt::specular_coherent(problem, request.mu_i);
-    result.diagnostics = computed.diagnostics;
+    expect_finite(result.radiance);
     return result;
 }
 
