@@ -157,7 +157,18 @@ TEST_F(CoefficientFiles, AForwardPeakCutOffIsReported) {
     EXPECT_THAT(outcome.out, HasSubstr("layer 0: 0.44 of its scattering, the forward peak"));
 }
 
-class CommandLine : public PatinaTest {};
+class CommandLine : public PatinaTest {
+  protected:
+    // A quick field with its stdout led elsewhere than to a file.
+    Outcome field_into(const std::string& options, const std::string& stdout_to) const {
+        const std::string command = fmt::format(
+            "cd '{}' && timeout 60 '{}' field '{}' --theta-i-deg 30 --streams 8 {} "
+            "2>.stderr {}",
+            folder().string(), PATINA_BINARY, example("siewert_problem_IIA.toml").string(), options, stdout_to);
+        const int status = std::system(command.c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, "", read_file(folder() / ".stderr")};
+    }
+};
 
 TEST_F(CommandLine, SuggestsTheNearestCommand) {
     const Outcome outcome = patina("slove x.toml");
@@ -176,6 +187,21 @@ TEST_F(CommandLine, UnwritableOutputIsARuntimeErrorAndLeavesNothing) {
     const Outcome outcome = patina("solve " + example("siewert_problem_IIA.toml").string() + " -o nowhere/out.h5");
     EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("nowhere"));
+}
+
+// A result shorter than the buffer is lost only when that is sent, at the very end.
+TEST_F(CommandLine, AResultThatAFullDiskDoesNotTakeIsARuntimeError) {
+    for (const char* angles : {"--theta-o-deg 0 --phi-deg 0", "--phi-deg 0:350:1"}) {
+        const Outcome outcome = field_into(angles, "> /dev/full");
+        EXPECT_EQ(outcome.exit_code, 1) << angles;
+        EXPECT_EQ(outcome.err, "error: the result cannot be written to stdout (No space left on device)\n");
+    }
+}
+
+TEST_F(CommandLine, AReaderThatGoesAwayEndsItQuietly) {
+    const Outcome outcome = field_into("--phi-deg 0:350:1", "| head -1 > first_line");
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_THAT(read_file(folder() / "first_line"), HasSubstr("theta"));
 }
 
 TEST_F(CommandLine, SettingsReachTheRecipe) {
