@@ -66,7 +66,7 @@ TrueError true_error(const brdf::MuellerTable& table, const brdf::MuellerTable& 
         const brdf::MuellerGrid found = table.evaluate_grid(wavelength_nm, mu_o, mu_i, phi),
                                 expected = reference.evaluate_grid(wavelength_nm, mu_o, mu_i, phi);
         result.largest = std::max(result.largest, jobs::largest_difference(found, expected));
-        result.scale = std::max(result.scale, jobs::largest_intensity(expected));
+        result.scale = std::max(result.scale, jobs::intensity_scale(expected));
     }
     return result;
 }

@@ -37,6 +37,20 @@ TEST_F(Pipeline, TheExampleSolvesChecksInspectsAndPlots) {
     EXPECT_EQ(patina("plot a.h5 --kind lobe -o lobe.png").exit_code, 0);
 }
 
+// Nothing scatters in a varnish: over a mirror its body BRDF is zero, which is no reason to doubt it or to take more
+// streams than the fewest.
+TEST_F(Pipeline, AClearVarnishOnAMirrorIsBlackAndConverged) {
+    write_file(folder() / "varnish.toml",
+               "[interface]\ntype = \"smooth\"\n[[layers]]\nthickness_um = 20\nbinder = { n = 1.5, k = 1e-5 }\n"
+               "[base]\ntype = \"metal\"\nmaterial = { n = 0.63, k = 7.04 }\n");
+    const Outcome outcome = patina("solve varnish.toml -o varnish.h5 --wavelengths 550 --tolerance 1e-4 --json");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const json solved = json::parse(outcome.out);
+    EXPECT_TRUE(solved.at("converged"));
+    EXPECT_LT(solved.at("plan").at("streams"), 10);
+    EXPECT_NEAR(solved.at("body")[0].at("reflectance_45_deg"), 0.0, 1e-12);
+}
+
 TEST_F(Pipeline, FieldReproducesARowOfSiewertsTables) {
     const Outcome outcome = patina("field " + example("siewert_problem_IIA.toml").string() +
                                    " --theta-i-deg 53.13010235415598 --theta-o-deg 60 --phi-deg 90 --tau 0 --json");

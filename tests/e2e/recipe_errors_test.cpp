@@ -105,11 +105,11 @@ INSTANTIATE_TEST_SUITE_P(Recipes, BadRecipes, ::testing::ValuesIn(bad_recipes),
 
 class CoefficientFiles : public PatinaTest {
   protected:
-    Outcome field_with(const std::string& coefficients) {
+    Outcome field_with(const std::string& coefficients, const std::string& options = "") {
         write_file(folder() / "c.csv", coefficients);
         write_file(folder() / "r.toml",
                    "[[layers]]\noptical_thickness = 1\nsingle_scattering_albedo = 0.9\nexpansion = \"c.csv\"\n");
-        return patina("field r.toml --theta-i-deg 30", 60);
+        return patina("field r.toml --theta-i-deg 30 " + options, 60);
     }
 };
 
@@ -132,7 +132,43 @@ TEST_F(CoefficientFiles, BrokenOnesAreRefusedWithLineAndColumn) {
     }
 }
 
-class CommandLine : public PatinaTest {};
+// Rayleigh's coefficients with beta1 in the column of alpha2: numbers that look right and are none of any matter.
+TEST_F(CoefficientFiles, MistakenColumnsAreRefusedAndCutOffSeriesAreReported) {
+    const std::string header = "l,alpha1,alpha2,alpha3,alpha4,beta1,beta2\n";
+    const Outcome mistaken = field_with(header + "0,1,0,0,0,0,0\n1,0,0,0,1.5,0,0\n2,0.5,1.2247,0,0,3,0\n");
+    EXPECT_EQ(mistaken.exit_code, 3);
+    EXPECT_THAT(mistaken.err, HasSubstr("c.csv:2:1: scattered by 90 degrees"));
+
+    const Outcome slightly = field_with(header + "0,1,0,0,0,0,0\n1,0,0,0,1.5,0,0\n2,0.5,3,0,0,1.3,0\n");
+    EXPECT_EQ(slightly.exit_code, 0);
+    EXPECT_THAT(slightly.err, HasSubstr("more polarization than intensity (by 0.092"));  // 1.5 (1.3 / 1.2247 - 1)
+
+    const Outcome exact = field_with(header + "0,1,0,0,0,0,0\n1,0,0,0,1.5,0,0\n2,0.5,3,0,0,1.2247449,0\n");
+    EXPECT_EQ(exact.exit_code, 0);
+    EXPECT_EQ(exact.err, "");
+}
+
+// Henyey and Greenstein's g = 0.95 at 8 streams: f = g^16 = 0.44 counts as unscattered, and the user is told.
+TEST_F(CoefficientFiles, AForwardPeakCutOffIsReported) {
+    std::string text = "l,alpha1,alpha2,alpha3,alpha4,beta1,beta2\n";
+    for (int l = 0; l <= 200; ++l) text += fmt::format("{},{},0,0,0,0,0\n", l, (2 * l + 1) * std::pow(0.95, l));
+    const Outcome outcome = field_with(text, "--scalar --streams 8 --json");
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.out, HasSubstr("layer 0: 0.44 of its scattering, the forward peak"));
+}
+
+class CommandLine : public PatinaTest {
+  protected:
+    // A quick field with its stdout led elsewhere than to a file.
+    Outcome field_into(const std::string& options, const std::string& stdout_to) const {
+        const std::string command = fmt::format(
+            "cd '{}' && timeout 60 '{}' field '{}' --theta-i-deg 30 --streams 8 {} "
+            "2>.stderr {}",
+            folder().string(), PATINA_BINARY, example("siewert_problem_IIA.toml").string(), options, stdout_to);
+        const int status = std::system(command.c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, "", read_file(folder() / ".stderr")};
+    }
+};
 
 TEST_F(CommandLine, SuggestsTheNearestCommand) {
     const Outcome outcome = patina("slove x.toml");
@@ -151,6 +187,21 @@ TEST_F(CommandLine, UnwritableOutputIsARuntimeErrorAndLeavesNothing) {
     const Outcome outcome = patina("solve " + example("siewert_problem_IIA.toml").string() + " -o nowhere/out.h5");
     EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("nowhere"));
+}
+
+// A result shorter than the buffer is lost only when that is sent, at the very end.
+TEST_F(CommandLine, AResultThatAFullDiskDoesNotTakeIsARuntimeError) {
+    for (const char* angles : {"--theta-o-deg 0 --phi-deg 0", "--phi-deg 0:350:1"}) {
+        const Outcome outcome = field_into(angles, "> /dev/full");
+        EXPECT_EQ(outcome.exit_code, 1) << angles;
+        EXPECT_EQ(outcome.err, "error: the result cannot be written to stdout (No space left on device)\n");
+    }
+}
+
+TEST_F(CommandLine, AReaderThatGoesAwayEndsItQuietly) {
+    const Outcome outcome = field_into("--phi-deg 0:350:1", "| head -1 > first_line");
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_THAT(read_file(folder() / "first_line"), HasSubstr("theta"));
 }
 
 TEST_F(CommandLine, SettingsReachTheRecipe) {

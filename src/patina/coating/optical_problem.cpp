@@ -4,6 +4,7 @@
 
 #include "patina/core/constants.h"
 #include "patina/core/contract.h"
+#include "patina/optics/scattering/expansion.h"
 #include "patina/optics/scattering/mixture.h"
 #include "patina/optics/scattering/packed_mixture.h"
 #include "patina/optics/scattering/structure_factor.h"
@@ -25,6 +26,8 @@ constexpr double neglected_reflectance = 5e-4;
 constexpr double reported_binder_absorption = 1e-3;
 // Indices this near to each other reflect less than 1e-7 at all but grazing angles.
 constexpr double same_index = 1e-3;
+// Six printed digits of a few hundred coefficients leave less, in units of the mean a1.
+constexpr double reported_excess = 1e-2;
 
 // Turns the recipe into numbers at one wavelength and remembers what had to be assumed.
 class ProblemBuilder {
@@ -51,6 +54,7 @@ class ProblemBuilder {
   private:
     rt::Layer layer_of(const OpticalLayer& layer) {
         result_.particles.emplace_back();
+        report_impossible(layer.expansion, fmt::format("layer {}", result_.problem.layers.size()));
         return {layer.optical_thickness, layer.single_scattering_albedo, layer.expansion, layer.refractive_index};
     }
 
@@ -85,6 +89,15 @@ class ProblemBuilder {
                                     host.imag()));
         const double albedo = extinction_per_um > 0.0 ? particles.scattering_per_um / extinction_per_um : 0.0;
         return {extinction_per_um * layer.thickness_um, std::clamp(albedo, 0.0, 1.0), particles.expansion, host.real()};
+    }
+
+    void report_impossible(const optics::ExpansionCoefficients& expansion, const std::string& name) {
+        const optics::StokesCriterion found = optics::stokes_criterion(expansion);
+        if (found.excess > reported_excess)
+            result_.notes.push_back(
+                fmt::format("{}: scattered by {:.0f} degrees light has more polarization than intensity (by {:.2g}, a1 "
+                            "being 1 on average): the expansion is cut off, or its columns are mistaken",
+                            name, found.angle_deg, found.excess));
     }
 
     std::complex<double> binder_index(const Composition& layer) {
@@ -129,9 +142,9 @@ class ProblemBuilder {
                                                double packing_fraction) {
         if (!optics::covers(particles, wavelength_nm_) && recipe_.extrapolation == optics::Extrapolation::hold)
             result_.notes.push_back(fmt::format("{}: its ends are held outside its wavelengths", particles.name));
-        optics::ScatteringProperties properties =
-            optics::pack(optics::scatter(particles, wavelength_nm_, recipe_.extrapolation), packing_fraction,
-                         host.real(), wavelength_nm_);
+        const optics::ScatteringProperties alone = optics::scatter(particles, wavelength_nm_, recipe_.extrapolation);
+        report_impossible(alone.expansion, particles.name);
+        optics::ScatteringProperties properties = optics::pack(alone, packing_fraction, host.real(), wavelength_nm_);
         const double replaced_um2 = binder_absorption_per_um(host) * properties.mean_volume_um3;
         properties.absorption_um2 -= replaced_um2;
         properties.extinction_um2 -= replaced_um2;

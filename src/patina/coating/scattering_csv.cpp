@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "patina/coating/number_csv.h"
+#include "patina/optics/scattering/expansion.h"
 #include "patina/optics/scattering/tabulated_matrix.h"
 
 namespace patina::coating {
@@ -15,6 +16,9 @@ namespace {
 constexpr int largest_order = 20000;
 // Below what tables of scattering matrices are good for.
 constexpr double matrix_tolerance = 1e-7;
+// A forward peak cut off swings to -0.13 of its height (the least of 2 J1(x)/x); what goes further down is no series of
+// a scattering matrix at all.
+constexpr double deepest_swing = 0.25;
 
 constexpr std::array<std::string_view, 2> expansion_headers{"l,alpha1,alpha2,alpha3,alpha4,beta1,beta2",
                                                             "wavelength_nm,l,alpha1,alpha2,alpha3,alpha4,beta1,beta2"};
@@ -53,6 +57,20 @@ std::vector<Block> blocks_of(NumberTable table, const std::filesystem::path& pat
     return blocks;
 }
 
+// Columns in another order or of other definitions show in what the matrix would do to light.
+void expect_possible(const optics::ExpansionCoefficients& c, const SourceLocation& where) {
+    const optics::StokesCriterion found = optics::stokes_criterion(c);
+    if (found.excess > deepest_swing * found.largest_a1)
+        throw input_error(
+            where,
+            fmt::format(
+                "scattered by {:.0f} degrees light would have more polarization than intensity, or less than no "
+                "intensity",
+                found.angle_deg),
+            fmt::format("by {:.2g}, where a1 is 1 on average", found.excess),
+            "check the order and the definitions of the columns");
+}
+
 optics::ExpansionCoefficients coefficients_of(const Block& block) {
     optics::ExpansionCoefficients c;
     std::vector<double>* const columns[] = {&c.alpha1, &c.alpha2, &c.alpha3, &c.alpha4, &c.beta1, &c.beta2};
@@ -77,6 +95,7 @@ optics::ExpansionCoefficients coefficients_of(const Block& block) {
                                               of_a_sum ? "twice " : "", limit));
         }
     }
+    expect_possible(c, block.rows.front().where);
     return c;
 }
 

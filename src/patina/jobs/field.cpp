@@ -5,6 +5,7 @@
 #include "patina/coating/optical_problem.h"
 #include "patina/core/constants.h"
 #include "patina/core/error.h"
+#include "patina/jobs/converged_field.h"
 
 namespace patina::jobs {
 
@@ -70,57 +71,15 @@ void check_streams(int streams) {
         throw Error(ErrorKind::usage, fmt::format("--streams {}: 2 to 512 make sense", streams));
 }
 
-constexpr int usual_streams = 32, most_streams = 72;
-
-// Enough for the digits of printed tables: the phase function exactly, as far as it goes.
-int exact_streams(const rt::Problem& problem) {
-    int order = 0;
-    for (const rt::Layer& layer : problem.layers) order = std::max(order, layer.expansion.order());
-    return std::clamp(order / 2 + 8, usual_streams, most_streams);
-}
-
-double largest_difference(const rt::Field& a, const rt::Field& b) {
-    double largest = 0.0;
-    for (const auto hemisphere : {&rt::Field::upward, &rt::Field::downward})
-        for (std::size_t d = 0; d < (a.*hemisphere).size(); ++d)
-            for (std::size_t o = 0; o < (a.*hemisphere)[d].size(); ++o)
-                for (std::size_t p = 0; p < (a.*hemisphere)[d][o].size(); ++p)
-                    largest = std::max(largest,
-                                       ((a.*hemisphere)[d][o][p] - (b.*hemisphere)[d][o][p]).lpNorm<Eigen::Infinity>());
-    return largest;
-}
-
-double largest_value(const rt::Field& field) {
-    rt::Field dark = field;
-    for (auto* hemisphere : {&dark.upward, &dark.downward})
-        for (auto& depth : *hemisphere)
-            for (auto& direction : depth)
-                for (optics::Stokes& stokes : direction) stokes.setZero();
-    return largest_difference(field, dark);
-}
-
-// Phase functions too long for that are truncated, with exact single scattering, and then far fewer nodes do than their
-// terms ask for. Climbs in steps of one half until what is left, by the fall of the differences, is beyond the fifth
-// digit.
-rt::Field converged_field(const rt::Solver& solver, const rt::Problem& problem, const rt::FieldRequest& request,
-                          rt::SolveOptions options) {
-    constexpr double beyond_fifth_digit = 5e-6;
-    const int most = exact_streams(problem);
-    options.streams = most < most_streams || solver.is_statistical() ? most : 12;
-    rt::Field coarser = solver.field(problem, request, options);
-    double difference_before = 0.0;
-    while (options.streams < most) {
-        options.streams = std::min(most, (3 * options.streams + 1) / 2);
-        rt::Field field = solver.field(problem, request, options);
-        const double difference = largest_difference(coarser, field);
-        if (difference_before > 0.0) {
-            const double left = difference * std::clamp(difference / difference_before, 0.3, 1.0);
-            if (left <= beyond_fifth_digit * largest_value(field)) return field;
-        }
-        difference_before = difference;
-        coarser = std::move(field);
-    }
-    return coarser;
+// A law of scattering that matter cannot have makes light without bounds.
+void expect_finite(const std::vector<FieldValue>& radiance) {
+    for (const FieldValue& value : radiance)
+        if (!value.stokes.allFinite() || (value.standard_error && !value.standard_error->allFinite()))
+            throw Error(
+                ErrorKind::check,
+                fmt::format("the radiance at tau {:g}, {:g} degrees is not a finite number; check the expansion "
+                            "coefficients, or try another solver",
+                            value.optical_depth, value.theta_deg));
 }
 
 }  // namespace
@@ -150,9 +109,12 @@ FieldResult field(const coating::Recipe& recipe, const FieldJob& job, const JobC
     options.cancel = control.cancel;
     options.progress = [&](double part) { control.report({"solving", 0, 1, "", part}); };
     options.streams = job.streams;
-    const rt::Field computed =
-        job.streams != 0 ? solver.field(problem, request, options) : converged_field(solver, problem, request, options);
+    const rt::Field computed = job.streams != 0 ? field_of_views(solver, problem, request, options)
+                                                : converged_field(solver, problem, request, options);
     control.report({"solving", 1, 1, ""});
+    result.diagnostics = computed.diagnostics;
+    const std::vector<std::string>& said = result.diagnostics.notes;
+    result.notes.insert(result.notes.end(), said.begin(), said.end());
 
     // List the depths in order, without the directions that only exist inside when nothing was asked for inside.
     for (size_t d = 0; d < request.optical_depths.size(); ++d)
@@ -168,7 +130,7 @@ FieldResult field(const coating::Recipe& recipe, const FieldJob& job, const JobC
         }
     result.specular_surface = rt::specular_surface(problem, request.mu_i);
     result.specular_coherent = rt::specular_coherent(problem, request.mu_i);
-    result.diagnostics = computed.diagnostics;
+    expect_finite(result.radiance);
     return result;
 }
 

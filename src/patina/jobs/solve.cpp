@@ -312,7 +312,7 @@ SolvedWavelength Solving::solve_one(size_t w, int streams, const std::function<v
         const brdf::MuellerGrid grid = between_nodes(body);
         options.streams = half_streams(streams);
         options.progress = {};
-        solved.scale = largest_intensity(grid);
+        solved.scale = intensity_scale(grid);
         solved.difference_from_half =
             largest_difference(grid, between_nodes(solve_body(solver_, problem, options, request_.tolerance)));
     }

@@ -79,7 +79,7 @@ double excess(References& references, const std::vector<std::size_t>& wavelength
         const brdf::MuellerGrid &grid = references.at(w, streams), &fine = references.at(w, finer);
         const double bound = error_bound(largest_difference(references.at(w, half_streams(streams)), grid),
                                          largest_difference(grid, fine));
-        if (bound > 0.0) worst = std::max(worst, bound / (tolerance * largest_intensity(fine)));
+        if (bound > 0.0) worst = std::max(worst, bound / (tolerance * intensity_scale(fine)));
     }
     return worst;
 }

@@ -52,8 +52,8 @@ double largest_difference(const brdf::MuellerGrid& a, const brdf::MuellerGrid& b
     return largest;
 }
 
-double largest_intensity(const brdf::MuellerGrid& grid) {
-    double largest = 0.0;
+double intensity_scale(const brdf::MuellerGrid& grid) {
+    double largest = darkest_scale;
     for (const optics::Mueller& value : grid.values) largest = std::max(largest, value(0, 0));
     return largest;
 }

@@ -21,8 +21,12 @@ inline constexpr std::size_t judged_values = 15 * 15 * 10 * 16;
 std::span<const double> to_values(const brdf::MuellerGrid& grid);
 brdf::MuellerGrid to_grid(std::span<const double> values);
 
-// Largest difference of any Mueller element, and the largest f00, 1/sr.
+// A body BRDF below this, 1/sr, is black: it has nothing but rounding where nothing scatters, as varnish over a mirror.
+// Errors are told in units of this then.
+inline constexpr double darkest_scale = 1e-9;
+
+// Largest difference of any Mueller element, and the largest f00, 1/sr, at least darkest_scale.
 double largest_difference(const brdf::MuellerGrid& a, const brdf::MuellerGrid& b);
-double largest_intensity(const brdf::MuellerGrid& grid);
+double intensity_scale(const brdf::MuellerGrid& grid);
 
 }  // namespace patina::jobs

@@ -22,8 +22,8 @@ class TableBase : public testing::Test {
   protected:
     TableBase() {
         std::ofstream(folder_ / "law.csv") << "l,alpha1,alpha2,alpha3,alpha4,beta1,beta2\n"
-                                              "0,1,0,0,0,0,0\n1,1.2,0,0,0.9,0,0\n2,0.9,3.1,0.4,0.6,0.3,0.2\n"
-                                              "3,0.3,0.9,0.3,0.2,0.1,0.1\n";
+                                              "0,1,0,0,0,0,0\n1,0.9,0,0,0.8,0,0\n2,0.5,1.2,0.6,0.4,0.3,0.1\n"
+                                              "3,0.1,0.3,0.2,0.1,0.1,0.05\n";
     }
 
     static std::string layer(double thickness) {

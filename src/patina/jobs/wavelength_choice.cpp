@@ -58,8 +58,7 @@ double error_of_halves(const Samples& samples, double low, double middle, double
     double largest = 0.0;
     for (std::size_t k = 0; k < b.values.size(); ++k)
         largest = std::max(largest, (0.5 * (a.values[k] + c.values[k]) - b.values[k]).cwiseAbs().maxCoeff());
-    const double scale = largest_intensity(b);
-    return scale > 0.0 ? 0.5 * largest / scale : 0.0;
+    return 0.5 * largest / intensity_scale(b);
 }
 
 }  // namespace

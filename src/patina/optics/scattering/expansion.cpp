@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "patina/core/constants.h"
 #include "patina/core/contract.h"
 
 namespace patina::optics {
@@ -95,34 +96,52 @@ ExpansionCoefficients expand(const ScatteringMatrix& matrix, double tolerance) {
 
 ScatteringElements evaluate(const ExpansionCoefficients& c, double cosine) {
     PATINA_EXPECT(cosine >= -1.0 && cosine <= 1.0);
-    ScatteringElements f{};
-    double sum = 0.0, difference = 0.0;
-    WignerColumns d(ArrayXd::Constant(1, cosine));
+    const ScatteringMatrix f = evaluate(c, math::Quadrature{{cosine}, {2.0}});
+    return {f.a1[0], f.a2[0], f.a3[0], f.a4[0], f.b1[0], f.b2[0]};
+}
+
+ScatteringMatrix evaluate(const ExpansionCoefficients& c, const math::Quadrature& cosines) {
+    const ArrayXd x = Eigen::Map<const ArrayXd>(cosines.nodes.data(), cosines.size());
+    ScatteringMatrix f;
+    f.cosines = cosines;
+    for (ArrayXd* element : {&f.a1, &f.a2, &f.a3, &f.a4, &f.b1, &f.b2}) *element = ArrayXd::Zero(x.size());
+    ArrayXd sum = f.a1, difference = f.a1;
+    WignerColumns d(x);
     for (int l = 0; l <= c.order(); ++l, d.advance()) {
-        f.a1 += c.alpha1[l] * d.d00()[0];
-        f.a4 += c.alpha4[l] * d.d00()[0];
-        sum += (c.alpha2[l] + c.alpha3[l]) * d.d22()[0];
-        difference += (c.alpha2[l] - c.alpha3[l]) * d.d2m2()[0];
-        f.b1 -= c.beta1[l] * d.d02()[0];
-        f.b2 -= c.beta2[l] * d.d02()[0];
+        f.a1 += c.alpha1[l] * d.d00();
+        f.a4 += c.alpha4[l] * d.d00();
+        sum += (c.alpha2[l] + c.alpha3[l]) * d.d22();
+        difference += (c.alpha2[l] - c.alpha3[l]) * d.d2m2();
+        f.b1 -= c.beta1[l] * d.d02();
+        f.b2 -= c.beta2[l] * d.d02();
     }
     f.a2 = 0.5 * (sum + difference);
     f.a3 = 0.5 * (sum - difference);
     return f;
 }
 
-ScatteringMatrix evaluate(const ExpansionCoefficients& c, const math::Quadrature& cosines) {
-    const Eigen::Index count = cosines.size();
-    ScatteringMatrix matrix;
-    matrix.cosines = cosines;
-    for (ArrayXd* element : {&matrix.a1, &matrix.a2, &matrix.a3, &matrix.a4, &matrix.b1, &matrix.b2})
-        element->resize(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-        const ScatteringElements f = evaluate(c, cosines.nodes[i]);
-        matrix.a1[i] = f.a1, matrix.a2[i] = f.a2, matrix.a3[i] = f.a3, matrix.a4[i] = f.a4;
-        matrix.b1[i] = f.b1, matrix.b2[i] = f.b2;
+StokesCriterion stokes_criterion(const ExpansionCoefficients& coefficients) {
+    // About four angles to a swing of the highest order, as far as that can be afforded.
+    const int intervals = std::clamp(4 * coefficients.order(), 64, 1024);
+    math::Quadrature angles;
+    for (int i = 0; i <= intervals; ++i) angles.nodes.push_back(-std::cos(pi * i / intervals));
+    angles.weights.assign(angles.nodes.size(), 0.0);
+    const ScatteringMatrix f = evaluate(coefficients, angles);
+
+    // Incident light is (1, q, U, V) with U^2 + V^2 = 1 - q^2; the block of U and V lengthens these by at most its
+    // larger singular value.
+    const ArrayXd half_sum = 0.5 * (f.a3 + f.a4), half_difference = 0.5 * (f.a3 - f.a4);
+    const ArrayXd stretch = (half_sum.square() + f.b2.square()).sqrt() + half_difference.abs();
+    ArrayXd excess = ArrayXd::Zero(intervals + 1);
+    constexpr int steps = 10;
+    for (int k = -steps; k <= steps; ++k) {
+        const double q = static_cast<double>(k) / steps;
+        const ArrayXd polarized = ((f.b1 + q * f.a2).square() + (1.0 - q * q) * stretch.square()).sqrt();
+        excess = excess.max(polarized - (f.a1 + q * f.b1));
     }
-    return matrix;
+    Eigen::Index where = 0;
+    const double largest = excess.maxCoeff(&where);
+    return {largest, 180.0 - 180.0 * static_cast<double>(where) / intervals, f.a1.maxCoeff()};
 }
 
 void add(ExpansionCoefficients& sum, const ExpansionCoefficients& term, double weight) {

@@ -22,6 +22,15 @@ ScatteringElements evaluate(const ExpansionCoefficients& coefficients, double co
 // F at the nodes of a rule.
 ScatteringMatrix evaluate(const ExpansionCoefficients& coefficients, const math::Quadrature& cosines);
 
+// How far F breaks Stokes' criterion, that no light is polarized more than fully: the largest sqrt(Q^2 + U^2 + V^2) - I
+// of light scattered once, over the scattering angles and all fully polarized incident light of I = 1, where a1 is 1 on
+// average. 0 for what matter can do; also where intensity would be negative it is above 0.
+struct StokesCriterion {
+    double excess, angle_deg;
+    double largest_a1;
+};
+StokesCriterion stokes_criterion(const ExpansionCoefficients& coefficients);
+
 // sum += weight * term, the shorter filled with zeros.
 void add(ExpansionCoefficients& sum, const ExpansionCoefficients& term, double weight);
 

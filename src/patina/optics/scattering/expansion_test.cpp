@@ -178,6 +178,23 @@ TEST(Expansion, IsARealizableMuellerMatrix) {
         }
 }
 
+// Rayleigh's matrix polarizes just fully at 90 degrees, where a1 = a2 = -b1 = 3/4. With b1 larger by a share e, light
+// that vibrates in the scattering plane would leave with I = Q = -(3/4) e: the excess is (3/2) e.
+TEST(Expansion, StokesCriterionTellsTheExcessOfPolarization) {
+    for (const double e : {0.0, 0.01, 0.1}) {
+        const ExpansionCoefficients c{
+            {1, 0, 0.5}, {0, 0, 3}, {0, 0, 0}, {0, 1.5, 0}, {0, 0, (1 + e) * std::sqrt(6.0) / 2}, {0, 0, 0}};
+        const StokesCriterion found = stokes_criterion(c);
+        EXPECT_NEAR(found.excess, 1.5 * e, 1e-14);
+        if (e > 0.0) EXPECT_NEAR(found.angle_deg, 90.0, 1e-9);
+        EXPECT_NEAR(found.largest_a1, 1.5, 1e-14);
+    }
+    // A phase function 1 + 3 g cos of g = 0.9 is -1.7 backwards.
+    EXPECT_NEAR(stokes_criterion({{1, 2.7}, {0, 0}, {0, 0}, {0, 0}, {0, 0}, {0, 0}}).excess, 1.7, 1e-14);
+    // U and V mixed by a block [[0, b2], [-b2, 0]] of b2 = a1 / 2 keep their length, halved: nothing is in excess.
+    EXPECT_EQ(stokes_criterion({{1, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0.8}}).excess, 0.0);
+}
+
 TEST(Expansion, TruncationDropsOnlyWhatIsBelowTheTolerance) {
     ExpansionCoefficients c{{1, 2, 3, 1e-3, 1e-5}, {0, 0, 1, 0, 0},    {0, 0, 0, 0, 0},
                             {0, 0, 0, 0, 0},       {0, 0, 0, 0, 1e-3}, {0, 0, 0, 0, 0}};
