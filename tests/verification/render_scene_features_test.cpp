@@ -70,6 +70,23 @@ TEST(TexturedLamp, IlluminatesByTheIntegralOfItsTexture) {
         }
 }
 
+// The floor under the same lamp, seen by a meter beside the lamp: paths from the meter and from the lamp agree.
+TEST(TexturedLamp, ShinesAlikeFromEitherEnd) {
+    const Node emitter = named(
+        node("emitter", "area", {}, {bitmap({{"raw", true}, {"filter_type", std::string("nearest")}})}), 0, "radiance");
+    const SceneResources halves = with_picture({"halves", 2, 1, {"Y"}, {3.0f, 0.0f}});
+    const Node tree =
+        scene({path(3), irradiance_meter(translate({-1.5, 0, 1}) * rotate_x(180)),
+               node("shape", "rectangle", {{"to_world", Eigen::Matrix4d(scale(2, 2, 1))}},
+                    {node("bsdf", "diffuse", {uniform("reflectance", 0.8)})}),
+               node("shape", "rectangle", {{"to_world", Eigen::Matrix4d(translate({0, 0, 1.2}) * rotate_x(180))}},
+                    {black(), emitter})});
+    const double expected = irradiance(tree, "path", 256, halves);
+    // 65536 paths each, whose weights vary by a few times their mean: 4 sigma of some 1 % and a half.
+    EXPECT_NEAR(irradiance(tree, "light", 256, halves), expected, 0.06 * expected);
+    EXPECT_GT(expected, 0.1);
+}
+
 // On a sphere and on a cylinder: a texture that is the same everywhere is a number.
 TEST(TexturedLamp, OfOneColourIsAPlainLamp) {
     const SceneResources two = with_picture({"two", 2, 2, {"Y"}, {2.0f, 2.0f, 2.0f, 2.0f}});
