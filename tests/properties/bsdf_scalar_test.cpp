@@ -186,5 +186,40 @@ TEST_F(BsdfFormula, NonsenseIsRefusedWithAReason) {
     EXPECT_THROW(make("merl", {{"filename", std::string("x.binary")}}), Error);  // no reader is supplied
 }
 
+// Burley (2012, 2015) with Mitsuba's clearcoat, for a grey base, whose hue is white.
+TEST_F(BsdfFormula, PrincipledIsTheSumOfBurleysLobes) {
+    const double base = 0.6, roughness = 0.45, metal = 0.3, tint = 0.4, sheen = 0.5, flat = 0.3, coat = 0.8,
+                 gloss = 0.6;
+    const Bsdf& bsdf = make("principled", {uniform("base_color", base),
+                                           {"roughness", roughness},
+                                           {"metallic", metal},
+                                           {"spec_tint", tint},
+                                           {"sheen", sheen},
+                                           {"flatness", flat},
+                                           {"clearcoat", coat},
+                                           {"clearcoat_gloss", gloss}});
+    const auto weight = [](double c) { return std::pow(1 - c, 5); };
+    const auto schlick = [&](double f0, double c) { return f0 + (1 - f0) * weight(c); };
+    for (const auto& [o, i] :
+         {std::pair{direction(30, 0), direction(50, 170)}, {direction(70, 10), direction(20, 80)}}) {
+        const Vec3 m = (o + i).normalized();
+        const double co = o.z(), ci = i.z(), cm = m.z(), cd = o.dot(m), eta = 1.5;
+        const double r = 2 * roughness * cd * cd, wo = weight(co), wi = weight(ci);
+        const double lambert = (1 - wo / 2) * (1 - wi / 2) + r * (wo + wi + wo * wi * (r - 1));
+        const double under = (1 - wo + wo * r / 2) * (1 - wi + wi * r / 2);
+        const double soft = 1.25 * (under * (1 / (co + ci) - 0.5) + 0.5);
+        const double alpha = roughness * roughness;
+        const double f =
+            (1 - metal) * ((1 - tint) * fresnel(cd, eta) + tint * schlick(0.04, cd)) + metal * schlick(base, cd);
+        const double lobe = f * ggx(cm, alpha) * masking(co, alpha) * masking(ci, alpha) / (4 * co * ci);
+        const double a2 = std::pow(0.1 + gloss * (0.001 - 0.1), 2);
+        const double tails = (a2 - 1) / (pi * std::log(a2) * (1 + (a2 - 1) * cm * cm));
+        const double expected = (1 - metal) * (base / pi * ((1 - flat) * lambert + flat * soft) + sheen * weight(cd)) +
+                                lobe + 0.25 * coat * schlick(0.04, cd) * tails * masking(co, 0.25) * masking(ci, 0.25);
+        // eta of specular 0.5 is 2 / (1 - sqrt(0.04)) - 1 = 1.5; single precision.
+        EXPECT_NEAR(intensity(bsdf, o, i), expected, 2e-5 * expected);
+    }
+}
+
 }  // namespace
 }  // namespace patina::render::test

@@ -48,7 +48,7 @@ Case needs_of(const std::string& name) {
     }
     if (name == "blendbsdf") c.children = {node("bsdf", "roughconductor"), node("bsdf", "roughplastic")};
     for (const char* mixed :
-         {"roughplastic", "pplastic", "phong", "lafortune", "blendbsdf", "merl", "measured_polarized"})
+         {"roughplastic", "pplastic", "phong", "lafortune", "principled", "blendbsdf", "merl", "measured_polarized"})
         c.mixes |= name == mixed;
     // Half-precision, linearly interpolated tables; and one of half angles on a grid of 5 degrees.
     if (name == "paint") c.reciprocity = 5e-3;
@@ -83,6 +83,17 @@ std::vector<Case> cases() {
                     uniform("weight_1", 1),
                     {"exponent_1", 6.0},
                     {"lobe_1", Eigen::Vector3d(-0.9, -1.0, 0.7)}}});
+    all.push_back({"principled", {{"metallic", 1.0}, {"roughness", 0.3}, {"anisotropic", 0.8}}, {}, {}, true});
+    all.push_back({"principled",
+                   {rgb("base_color", 0.6, 0.3, 0.1),
+                    {"metallic", 0.4},
+                    {"spec_tint", 0.6},
+                    {"flatness", 0.5},
+                    {"clearcoat", 1.0},
+                    {"clearcoat_gloss", 0.5}},
+                   {},
+                   {},
+                   true});
     all.push_back({"orennayar", {uniform("reflectance", 0.95), {"sigma", 35.0}}});
     all.push_back({"mask", {uniform("opacity", 0.25)}, {node("bsdf", "plastic")}});
     all.push_back(

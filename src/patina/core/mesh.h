@@ -16,6 +16,13 @@ struct TriangleMesh {
     std::vector<Eigen::Vector3f> normals;                 // V unit vectors, or empty: flat shading
     std::vector<Eigen::Vector2f> uvs;                     // V, or empty
     std::vector<std::array<std::uint32_t, 3>> triangles;  // T corner indices < V, counter-clockwise seen from outside
+
+    // Texture coordinates at the weights u and v of a triangle's second and third corner; without any, the weights.
+    Eigen::Vector2f uv_at(int triangle, float u, float v) const {
+        if (uvs.empty()) return {u, v};
+        const auto& [a, b, c] = triangles[triangle];
+        return (1 - u - v) * uvs[a] + u * uvs[b] + v * uvs[c];
+    }
 };
 
 }  // namespace patina

@@ -24,6 +24,8 @@ const T& expect_type(const Properties::Entry& entry, std::string_view expected) 
 
 double to_number(const Properties::Entry& entry) {
     if (const auto* integer = std::get_if<std::int64_t>(&entry.value)) return static_cast<double>(*integer);
+    if (const auto* spectrum = std::get_if<SpectrumSpec>(&entry.value))
+        if (spectrum->kind == SpectrumSpec::Kind::uniform) return spectrum->values[0];
     return expect_type<double>(entry, "float");
 }
 

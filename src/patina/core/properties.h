@@ -22,10 +22,10 @@ namespace patina {
 // A spectrum as written in a scene file, before it is given a meaning (reflectance, radiance, refractive index).
 struct SpectrumSpec {
     enum class Kind {
-        uniform,    // one value at every wavelength: values[0]
-        sampled,    // values at wavelengths_nm (irregular, a file, or regular expanded to its grid)
-        rgb,        // linear sRGB in values[0..2]
-        blackbody   // kelvin in values[0], scale in values[1]
+        uniform,   // one value at every wavelength: values[0]
+        sampled,   // values at wavelengths_nm (irregular, a file, or regular expanded to its grid)
+        rgb,       // linear sRGB in values[0..2]
+        blackbody  // kelvin in values[0], scale in values[1]
     };
     Kind kind = Kind::uniform;
     std::vector<double> wavelengths_nm;
@@ -61,7 +61,7 @@ class Properties {
 
     bool has(std::string_view name) const;
 
-    // The value of `name`, converted where nothing is lost (int to float, number to uniform spectrum).
+    // The value of `name`, converted where nothing is lost (int to float, number to uniform spectrum and back).
     // Throws Error(input) at the entry for a value of another type or, without a default, at the node for a missing
     // one.
     double number(std::string_view name) const;

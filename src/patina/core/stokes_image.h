@@ -13,6 +13,12 @@
 
 namespace patina {
 
+// Numbers beside the light, such as depths: one channel of one value a pixel.
+struct ImageLayer {
+    std::string name;
+    std::vector<float> values;
+};
+
 struct StokesImage {
     int width = 0, height = 0;            // of the stored (cropped) window
     int crop_x = 0, crop_y = 0;           // upper left corner of the window in the full film
@@ -27,6 +33,7 @@ struct StokesImage {
     std::vector<float>
         variance;  // [pixel][stokes]: variance of the MEAN of the luminance Y of each component; may be empty
     std::vector<std::uint32_t> sample_count;      // [pixel]
+    std::vector<ImageLayer> layers;               // written, not read
     std::map<std::string, std::string> metadata;  // provenance: scene, seed, samples per pixel, software, ...
 
     int bin_count() const { return bin_edges_nm.empty() ? 0 : static_cast<int>(bin_edges_nm.size()) - 1; }

@@ -1,5 +1,6 @@
 #include "patina/io/located_text.h"
 
+#include <cctype>
 #include <charconv>
 #include <cmath>
 
@@ -90,7 +91,9 @@ std::int64_t parse_integer(std::string_view text, const SourceLocation& where, s
 }
 
 bool parse_boolean(std::string_view text, const SourceLocation& where) {
-    const std::string_view word = trimmed(text);
+    std::string word(trimmed(text));
+    // Python writes True, and Mitsuba does not mind.
+    for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     if (word == "true") return true;
     if (word == "false") return false;
     throw input_error(where, fmt::format("value {} is not a boolean", in_quotes(text)), "", "write true or false");

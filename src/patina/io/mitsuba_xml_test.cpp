@@ -151,6 +151,17 @@ TEST(MitsubaXml, ParametersAreReplacedInBracesAndByTheLongestKnownName) {
     EXPECT_EQ(node->integer("b", 0), 256);
 }
 
+TEST(MitsubaXml, TakesWhatPythonWritesAndSpectraOfOneNumber) {
+    const auto node = parse(
+                          "<bsdf type='a'><boolean name='t' value='True'/><boolean name='f' value=' FALSE '/>"
+                          "<spectrum name='n' value='45'/><spectrum name='s' value='400:1, 500:2'/></bsdf>")
+                          ->only_child("bsdf");
+    EXPECT_TRUE(node->boolean("t", false));
+    EXPECT_FALSE(node->boolean("f", true));
+    EXPECT_EQ(node->number("n"), 45);
+    EXPECT_THROW(node->number("s"), Error);
+}
+
 TEST(MitsubaXml, ReferencesShareTheNodeEvenBeforeItsDefinition) {
     const auto scene = parse(
         "<shape type='sphere'><ref id='gold' name='bsdf'/></shape><bsdf type='diffuse' id='gold'/>"

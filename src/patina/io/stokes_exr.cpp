@@ -117,6 +117,7 @@ void write_stokes_exr(const std::filesystem::path& path, const StokesImage& imag
     }
     if (options.variance && image.sample_count.size() == pixels)
         planes.push_back({"samples", nullptr, image.sample_count.data(), 1});
+    for (const ImageLayer& layer : image.layers) planes.push_back({layer.name, layer.values.data(), nullptr, 1});
     write_exr(path, info_of(image, spectral), planes);
 }
 

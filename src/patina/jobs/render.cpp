@@ -194,7 +194,10 @@ render::Pictures render_scene(const RenderRequest& request, const JobControl& co
     const bool stopped = pictures.whole.metadata.contains("stopped");
     if (!request.checkpoint.empty() && !stopped && !request.keep_checkpoint) file.remove();
     const std::shared_ptr<const Properties> node = tree->only_child("integrator");
-    const std::string integrator = request.options.integrator.value_or(node ? node->type : "path");
+    // `aov` hides what it wraps; Stokes channels are asked for wherever `stokes` stands.
+    std::shared_ptr<const Properties> named = node;
+    while (named && named->type == "aov") named = named->only_child("integrator");
+    const std::string integrator = request.options.integrator.value_or(named ? named->type : "path");
     if ((integrator == "light" || integrator == "ptracer") && shows_mirrors(*scene))
         warnings.emplace_back(
             "light tracing leaves out what mirrors, glass and other surfaces without a spread show the camera; "

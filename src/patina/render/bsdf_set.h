@@ -16,6 +16,7 @@
 #include "patina/render/bsdfs/phong.h"
 #include "patina/render/bsdfs/plastic.h"
 #include "patina/render/bsdfs/polarizer.h"
+#include "patina/render/bsdfs/principled.h"
 #include "patina/render/bsdfs/rough_conductor.h"
 #include "patina/render/bsdfs/rough_dielectric.h"
 #include "patina/render/bsdfs/thin_dielectric.h"
@@ -27,13 +28,13 @@ template <BsdfModel... Models>
 using BsdfVariant = std::variant<Models...>;
 
 struct Bsdf {
-    using Model = BsdfVariant<Diffuse, OrenNayar, Phong, Lafortune,            // empirical
-                              Dielectric, ThinDielectric, RoughDielectric,     // interfaces
-                              Conductor, RoughConductor,                       // metals
-                              Plastic, RoughPlastic, PolarizedPlastic, Paint,  // coatings
-                              Dipole,                                          // translucent matter
-                              MeasuredPolarized, Merl,                         // tables
-                              LinearPolarizer, Retarder, CircularPolarizer,    // polarization optics
+    using Model = BsdfVariant<Diffuse, OrenNayar, Phong, Lafortune, Principled,  // empirical
+                              Dielectric, ThinDielectric, RoughDielectric,       // interfaces
+                              Conductor, RoughConductor,                         // metals
+                              Plastic, RoughPlastic, PolarizedPlastic, Paint,    // coatings
+                              Dipole,                                            // translucent matter
+                              MeasuredPolarized, Merl,                           // tables
+                              LinearPolarizer, Retarder, CircularPolarizer,      // polarization optics
                               TwoSided, Blend, Mask, NormalMap, BumpMap, Null>;
     Model model;
 };

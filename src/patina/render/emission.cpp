@@ -14,12 +14,13 @@ struct Start {
 
     bool operator()(const AreaEmitter& e) const {
         const Shape& shape = geometry.shapes[e.shape];
-        point_of_shape(geometry, shape, u_origin, out.position, out.normal);
+        Vec2 uv;
+        point_of_shape(geometry, shape, u_origin, out.position, out.normal, uv);
         const Vec3 local = cosine_hemisphere(u_ray);
         out.direction = Frame(out.normal).to_world(local);
         out.origin_pdf = 1 / shape.area;
         out.ray_pdf = local.z() * inv_pi_f;
-        out.power = e.radiance.at(w) * (pi_f * shape.area);
+        out.power = e.radiance.at(w, uv) * (pi_f * shape.area);
         // Start on the side it leaves to.
         const float reach = std::max(out.position.cwiseAbs().maxCoeff(), 0.1f * geometry.radius());
         out.position += out.normal * (2e-6f * reach);

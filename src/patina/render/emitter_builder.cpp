@@ -109,11 +109,11 @@ SpotEmitter spot(const Properties& node) {
 
 }  // namespace
 
-Spectrum build_area_radiance(const Properties& node) {
+Texture build_area_radiance(const Properties& node, const SceneResources& resources) {
     expect_plugin(node);
     if (node.type != "area")
         throw input_error(node.where, fmt::format("a shape cannot be a \"{}\" emitter", node.type), "", "use \"area\"");
-    Spectrum radiance = emission(node, "radiance");
+    Texture radiance = Texture::emission(node, "radiance", 1.0f, resources);
     expect_known_properties(node);
     return radiance;
 }

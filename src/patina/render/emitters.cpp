@@ -86,7 +86,7 @@ struct Draw {
         if (out.direction.dot(at.normal) >= 0) return false;
         out.normal = at.normal;
         out.pdf = at.pdf;
-        out.radiance = e.radiance.at(w);
+        out.radiance = e.radiance.at(w, at.uv);
         return true;
     }
     bool operator()(const PointEmitter& e) const { return towards(e.position, e.intensity.at(w)); }

@@ -10,6 +10,7 @@
 #include "patina/render/geometry.h"
 #include "patina/render/lamp_tree.h"
 #include "patina/render/spectrum.h"
+#include "patina/render/texture.h"
 
 namespace patina::render {
 
@@ -24,10 +25,11 @@ struct LightSample {
     Vec3 normal = Vec3::Zero();  // of a surface that shines
 };
 
-// A surface that shines from its outside, `area`: the same radiance into every direction (Lambert's law).
+// A surface that shines from its outside, `area`: the same radiance into every direction (Lambert's law), of each place
+// its own where a texture says so. Points are drawn uniformly over the area.
 struct AreaEmitter {
     int shape = -1;
-    Spectrum radiance;
+    Texture radiance;
 };
 
 // Intensity I into every direction from a point, `point`: irradiance I cos / r^2.
@@ -102,7 +104,7 @@ class Lights {
     // Radiance that leaves a surface towards `outgoing` (world).
     Float4 surface_radiance(int emitter, const SurfacePoint& at, const Vec3& outgoing, const Wavelengths& w) const {
         if (outgoing.dot(at.geometric_normal) <= 0) return splat(0);
-        return std::get<AreaEmitter>(emitters_[emitter]).radiance.at(w);
+        return std::get<AreaEmitter>(emitters_[emitter]).radiance.at(w, at.uv);
     }
     // Density with which sample() finds a point of an emitting surface, per solid angle at `from`.
     float surface_pdf(int emitter, const Geometry& geometry, const Hit& hit, const SurfacePoint& at,
@@ -157,6 +159,6 @@ class Lights {
 
 // The emitter a plugin names (not `area`, which belongs to its shape).
 Emitter build_emitter(const Properties& node, const SceneResources& resources);
-Spectrum build_area_radiance(const Properties& node);
+Texture build_area_radiance(const Properties& node, const SceneResources& resources);
 
 }  // namespace patina::render

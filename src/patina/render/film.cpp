@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "patina/core/constants.h"
 #include "patina/core/contract.h"
 #include "patina/core/error.h"
 #include "patina/render/plugins.h"
@@ -14,61 +15,114 @@ namespace {
 
 constexpr int filter_nodes = 1025;
 
-std::vector<float> inverse_cdf(double radius, const std::function<double(double)>& filter) {
-    // Integrate by the trapezoidal rule on a fine grid, then invert.
-    constexpr int steps = 8192;
-    std::vector<double> cdf(steps + 1, 0.0);
-    const double h = 2 * radius / steps;
-    for (int i = 1; i <= steps; ++i)
+constexpr int filter_steps = 8192;
+
+// Of the area under `filter` over -radius .. radius, by the trapezoidal rule on a fine grid; `area` is the whole of it.
+std::vector<float> inverse_cdf(double radius, const std::function<double(double)>& filter, double& area) {
+    std::vector<double> cdf(filter_steps + 1, 0.0);
+    const double h = 2 * radius / filter_steps;
+    for (int i = 1; i <= filter_steps; ++i)
         cdf[i] = cdf[i - 1] + 0.5 * h * (filter(-radius + (i - 1) * h) + filter(-radius + i * h));
+    area = cdf.back();
     std::vector<float> inverse(filter_nodes);
     int at = 0;
     for (int i = 0; i < filter_nodes; ++i) {
         const double target = cdf.back() * i / (filter_nodes - 1);
-        while (at < steps - 1 && cdf[at + 1] < target) ++at;
+        while (at < filter_steps - 1 && cdf[at + 1] < target) ++at;
         const double width = cdf[at + 1] - cdf[at];
         inverse[i] = static_cast<float>(-radius + h * (at + (width > 0 ? (target - cdf[at]) / width : 0.0)));
     }
     return inverse;
 }
 
+// Mitchell & Netravali (1988), Reconstruction filters in computer graphics, eq. 8.
+double cubic(double x, double b, double c) {
+    x = std::abs(x);
+    if (x >= 2) return 0;
+    if (x < 1) return ((12 - 9 * b - 6 * c) * x * x * x + (-18 + 12 * b + 6 * c) * x * x + 6 - 2 * b) / 6;
+    return ((-b - 6 * c) * x * x * x + (6 * b + 30 * c) * x * x + (-12 * b - 48 * c) * x + 8 * b + 24 * c) / 6;
+}
+
+double sinc(double x) {
+    return std::abs(x) < 1e-6 ? 1.0 : std::sin(pi * x) / (pi * x);
+}
+
+double number_within(const Properties& node, const char* name, double fallback, double low, double high) {
+    const double value = node.number(name, fallback);
+    if (value >= low && value <= high) return value;
+    throw input_error(node.location_of(name), fmt::format("{} of the filter is out of range", name),
+                      fmt::format("it is {}", value), fmt::format("keep it between {} and {}", low, high));
+}
+
 }  // namespace
 
 PixelFilter::PixelFilter(const Properties& node) : name_(node.type) {
     expect_plugin(node);
-    const auto radius_of = [&](double fallback) {
-        const double radius = node.number("radius", fallback);
-        if (!(radius > 0 && radius < 100)) throw input_error(node.location_of("radius"), "filter radius out of range");
-        return radius;
-    };
+    const auto radius_of = [&](double fallback) { return number_within(node, "radius", fallback, 1e-3, 100); };
     if (node.type == "box") {
-        if (const double radius = radius_of(0.5); radius != 0.5)
-            inverse_cdf_ = inverse_cdf(radius, [](double) { return 1.0; });
+        if (const double radius = radius_of(0.5); radius != 0.5) tabulate(radius, [](double) { return 1.0; });
     } else if (node.type == "tent") {
         const double radius = radius_of(1.0);
-        inverse_cdf_ = inverse_cdf(radius, [=](double x) { return std::max(0.0, 1 - std::abs(x) / radius); });
+        tabulate(radius, [=](double x) { return std::max(0.0, 1 - std::abs(x) / radius); });
+    } else if (node.type == "gaussian") {
+        const double sigma = number_within(node, "stddev", 0.5, 1e-3, 100), end = std::exp(-0.5 * 16.0);
+        tabulate(4 * sigma, [=](double x) { return std::max(0.0, std::exp(-0.5 * x * x / (sigma * sigma)) - end); });
+    } else if (node.type == "lanczos") {
+        const auto lobes = static_cast<double>(node.integer("lobes", 3));
+        number_within(node, "lobes", 3, 1, 16);
+        tabulate(lobes, [=](double x) { return std::abs(x) < lobes ? sinc(x) * sinc(x / lobes) : 0.0; });
     } else {
-        const double sigma = node.number("stddev", 0.5);
-        if (!(sigma > 0 && sigma < 100)) throw input_error(node.location_of("stddev"), "stddev out of range");
-        const double radius = 4 * sigma, end = std::exp(-0.5 * 16.0);
-        inverse_cdf_ = inverse_cdf(
-            radius, [=](double x) { return std::max(0.0, std::exp(-0.5 * x * x / (sigma * sigma)) - end); });
+        // Beyond these the lobes take the most of the filter.
+        const bool mitchell = node.type == "mitchell";
+        const double b = mitchell ? number_within(node, "A", 1.0 / 3, 0, 1) : 0.0;
+        const double c = mitchell ? number_within(node, "B", 1.0 / 3, 0, 1) : 0.5;
+        tabulate(2, [=](double x) { return cubic(x, b, c); });
     }
     expect_known_properties(node);
 }
 
-float PixelFilter::sample(float u) const {
-    if (inverse_cdf_.empty()) return u - 0.5f;
-    const float x = u * (filter_nodes - 1);
-    const int i = std::min(static_cast<int>(x), filter_nodes - 2);
-    return inverse_cdf_[i] + (x - i) * (inverse_cdf_[i + 1] - inverse_cdf_[i]);
+void PixelFilter::tabulate(double radius, std::function<double(double)> filter) {
+    double positive = 0, negative = 0;
+    positive_ = inverse_cdf(
+        radius, [&](double x) { return std::max(0.0, filter(x)); }, positive);
+    reach_ = positive_.back();
+    InverseCdf lobes = inverse_cdf(
+        radius, [&](double x) { return std::max(0.0, -filter(x)); }, negative);
+    if (!(negative > 1e-9 * positive)) return;
+    negative_ = std::move(lobes);
+    reach_ = static_cast<float>(radius);
+    share_ = static_cast<float>(negative / (positive + negative));
+    mean_weight_ = static_cast<float>(std::pow((positive - negative) / (positive + negative), 2));
+    lobed_ = [filter = std::move(filter), scale = 1 / (positive - negative)](double x) { return scale * filter(x); };
 }
 
-float PixelFilter::density(float offset) const {
-    if (inverse_cdf_.empty()) return std::abs(offset) <= 0.5f ? 1.0f : 0.0f;
+float PixelFilter::drawn(const InverseCdf& table, float u) {
+    if (table.empty()) return u - 0.5f;
+    const float x = u * (filter_nodes - 1);
+    const int i = std::min(static_cast<int>(x), filter_nodes - 2);
+    return table[i] + (x - i) * (table[i + 1] - table[i]);
+}
+
+// The first number alone decides whether the place lies in a lobe along x, along y, or has weight 1: it is stratified
+// over the samples of a pixel, so that the weights add up to nearly the same sum in all pixels.
+PixelFilter::Place PixelFilter::sample_lobes(const Vec2& u) const {
+    const float one = share_ * (1 - share_), both = share_ * share_;
+    float first = 0, width = one;
+    bool lobe_x = true, lobe_y = false;
+    if (u.x() >= one) first = one, lobe_x = false, lobe_y = true;
+    if (u.x() >= 2 * one) first = 2 * one, width = both, lobe_x = lobe_y = true;
+    if (u.x() >= 2 * one + both) first = 2 * one + both, width = 1 - first, lobe_x = lobe_y = false;
+    const float rest = std::clamp((u.x() - first) / width, 0.0f, 0x1.fffffep-1f);
+    return {{drawn(lobe_x ? negative_ : positive_, rest), drawn(lobe_y ? negative_ : positive_, u.y())},
+            lobe_x == lobe_y ? 1.0f : -1.0f};
+}
+
+float PixelFilter::value(float offset) const {
+    if (lobed_) return static_cast<float>(lobed_(offset));
+    if (positive_.empty()) return std::abs(offset) <= 0.5f ? 1.0f : 0.0f;
     // Between two nodes sample() is uniform.
-    const auto upper = std::upper_bound(inverse_cdf_.begin(), inverse_cdf_.end(), offset);
-    if (upper == inverse_cdf_.begin() || upper == inverse_cdf_.end()) return 0;
+    const auto upper = std::upper_bound(positive_.begin(), positive_.end(), offset);
+    if (upper == positive_.begin() || upper == positive_.end()) return 0;
     return 1 / ((filter_nodes - 1) * (*upper - *(upper - 1)));
 }
 
@@ -110,12 +164,13 @@ FilmSettings build_film(const Properties& node) {
     return film;
 }
 
-Film::Film(const FilmSettings& settings, const ColourMatching& matching, bool with_variance)
+Film::Film(const FilmSettings& settings, const ColourMatching& matching, bool with_variance, bool weighted)
     : settings_(settings), bins_(static_cast<int>(settings.bin_edges_nm.size()) - 1) {
     PATINA_EXPECT(bins_ >= 1);
     stride_ = bins_ + 5;
     sums_.assign(pixel_count() * stride_, splat(0));
     if (with_variance) batches_.assign(pixel_count() * most_batches, splat(0));
+    if (weighted) weights_.assign(pixel_count() * weight_stride, 0.0f);
     const std::vector<double>& edges = settings_.bin_edges_nm;
     for (int b = 0; b < bins_; ++b)
         bin_weight_.push_back(
@@ -134,10 +189,16 @@ void Film::end_batch(std::size_t pixel, [[maybe_unused]] int samples) {
     // Join the batches two by two when this one is the first of twice the size.
     int batches = static_cast<int>(colour[4][2]);
     if (batches == most_batches) {
-        for (batches = 0; batches < most_batches / 2; ++batches) ends[batches] = ends[2 * batches + 1];
+        for (batches = 0; batches < most_batches / 2; ++batches) {
+            ends[batches] = ends[2 * batches + 1];
+            if (weights_.empty()) continue;
+            float* weights = &weights_[pixel * weight_stride + 1];
+            weights[batches] = weights[2 * batches + 1];
+        }
     }
     PATINA_ASSERT(samples == (batches + 1) * batch_size(samples));
     ends[batches] = Float4{colour[0][1], colour[1][1], colour[2][1], colour[3][1]};
+    if (!weights_.empty()) weights_[pixel * weight_stride + 1 + batches] = weights_[pixel * weight_stride];
     colour[4][2] = static_cast<float>(batches + 1);
     colour[4][3] = colour[4][0];
 }
@@ -147,25 +208,41 @@ std::array<double, 4> Film::variances_of_means(std::size_t pixel) const {
     const int batches = static_cast<int>(colour[4][2]);
     if (batches < 2) return {INFINITY, INFINITY, INFINITY, INFINITY};
     const Float4* ends = &batches_[pixel * most_batches];
-    const double samples = colour[4][0], size = colour[4][3] / batches;
+    const double size = colour[4][3] / batches;
+    const double weight = weight_at_end(pixel, batches - 1, size), whole = divisor(pixel);
     std::array<double, 4> variances{};
+    if (!(weight > 0)) return {INFINITY, INFINITY, INFINITY, INFINITY};
+    // Of a ratio of means, which without lobes has a denominator that does not vary (Cochran 1977, section 6.4).
     for (int k = 0; k < 4; ++k) {
-        const double mean = ends[batches - 1][k] / (batches * size);
-        double before = 0;
+        const double mean = ends[batches - 1][k] / weight;
+        double before = 0, weight_before = 0;
         for (int b = 0; b < batches; ++b) {
-            const double difference = (ends[b][k] - before) / size - mean;
-            variances[k] += difference * difference / (batches - 1) * size / samples;
-            before = ends[b][k];
+            const double now = weight_at_end(pixel, b, size);
+            const double difference = ends[b][k] - before - mean * (now - weight_before);
+            variances[k] += difference * difference * batches / (batches - 1) / (weight * whole);
+            before = ends[b][k], weight_before = now;
         }
     }
     return variances;
+}
+
+// Few samples may lie in lobes by more than half: then the sum of weights tells nothing, and half of what it is on
+// average stands for it.
+float Film::divisor(std::size_t pixel) const {
+    const float samples = sums_[pixel * stride_ + bins_ + 4][0];
+    if (weights_.empty()) return samples;
+    return std::max(weights_[pixel * weight_stride], 0.5f * settings_.filter.mean_weight() * samples);
+}
+
+double Film::weight_at_end(std::size_t pixel, int batch, double batch_samples) const {
+    return weights_.empty() ? (batch + 1) * batch_samples : weights_[pixel * weight_stride + 1 + batch];
 }
 
 double Film::relative_noise() const {
     double variance = 0, luminance = 0;
     for (std::size_t pixel = 0; pixel < pixel_count(); ++pixel) {
         const Float4* colour = &sums_[pixel * stride_] + bins_;
-        luminance += static_cast<double>(colour[0][1]) / colour[4][0];
+        luminance += static_cast<double>(colour[0][1]) / divisor(pixel);
         variance += variances_of_means(pixel)[0];
     }
     const double pixels = static_cast<double>(pixel_count());
@@ -188,16 +265,16 @@ StokesImage Film::develop() const {
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
         const Float4* sums = &sums_[pixel * stride_];
         const Float4* colour = sums + bins_;
-        const float n = colour[4][0];
-        if (n == 0) continue;
+        const float samples = colour[4][0], n = divisor(pixel);
+        if (samples == 0) continue;
         for (int b = 0; b < bins_; ++b)
             for (int k = 0; k < 4; ++k) image.stokes(pixel, b)[k] = sums[b][k] / n;
         for (int k = 0; k < 4; ++k) {
             const Vec3 xyz = Vec3(colour[k][0], colour[k][1], colour[k][2]) / n;
             Eigen::Map<Vec3>(image.stokes_rgb(pixel) + 3 * k) = xyz_to_srgb(xyz);
         }
-        image.alpha[pixel] = colour[4][1] / n;
-        image.sample_count[pixel] = static_cast<std::uint32_t>(n);
+        image.alpha[pixel] = colour[4][1] / samples;
+        image.sample_count[pixel] = static_cast<std::uint32_t>(samples);
         if (const std::array<double, 4> variances = variances_of_means(pixel); std::isfinite(variances[0])) {
             for (int k = 0; k < 4; ++k) image.variance[pixel * 4 + k] = static_cast<float>(variances[k]);
             spread_known = true;

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -15,27 +16,42 @@
 
 namespace patina::render {
 
-// A reconstruction filter sampled in proportion to its value, so that each sample belongs to one pixel with weight 1
-// (Ernst, Stamminger & Greiner 2006, Filter importance sampling). Filters with negative lobes cannot be.
+// A reconstruction filter sampled in proportion to its modulus, so that each sample belongs to one pixel (Ernst,
+// Stamminger & Greiner 2006, Filter importance sampling) with weight 1, or in a negative lobe -1.
 class PixelFilter {
   public:
     PixelFilter() = default;  // box of one pixel
-    // `box`, `tent`, `gaussian`; throws Error(input) for others.
+    // `box`, `tent`, `gaussian`, `mitchell`, `catmullrom`, `lanczos`; throws Error(input) for others.
     explicit PixelFilter(const Properties& node);
 
-    // Offset from the pixel's centre, in pixels.
-    Vec2 sample(const Vec2& u) const { return {sample(u.x()), sample(u.y())}; }
-    // Density of sample() per square pixel, and the largest offset along x or y that it draws.
-    float density(const Vec2& offset) const { return density(offset.x()) * density(offset.y()); }
-    float reach() const { return inverse_cdf_.empty() ? 0.5f : inverse_cdf_.back(); }
+    struct Place {
+        Vec2 offset;  // from the pixel's centre, in pixels
+        float weight = 1;
+    };
+    Place sample(const Vec2& u) const {
+        return negative_.empty() ? Place{{drawn(positive_, u.x()), drawn(positive_, u.y())}} : sample_lobes(u);
+    }
+    // The filter, whose integral is 1 pixel, and the largest offset along x or y that it reaches.
+    float value(const Vec2& offset) const { return value(offset.x()) * value(offset.y()); }
+    float reach() const { return reach_; }
+    bool has_lobes() const { return !negative_.empty(); }
+    float mean_weight() const { return mean_weight_; }
     const std::string& name() const { return name_; }
 
   private:
-    float sample(float u) const;
-    float density(float offset) const;
+    // Offsets at equidistant u; empty for the box.
+    using InverseCdf = std::vector<float>;
+    static float drawn(const InverseCdf& table, float u);
+    void tabulate(double radius, std::function<double(double)> filter);
+    Place sample_lobes(const Vec2& u) const;
+    float value(float offset) const;
 
     std::string name_ = "box";
-    std::vector<float> inverse_cdf_;  // offsets at equidistant u; empty for the box
+    InverseCdf positive_, negative_;  // of the filter's positive part and of its negative lobes
+    float reach_ = 0.5f;
+    float share_ = 0;  // of the lobes in the integral of the modulus along one axis
+    float mean_weight_ = 1;
+    std::function<double(double)> lobed_;  // the filter along one axis, if it has lobes
 };
 
 struct FilmSettings {
@@ -54,7 +70,8 @@ FilmSettings build_film(const Properties& node);
 // time.
 class Film {
   public:
-    Film(const FilmSettings& settings, const ColourMatching& matching, bool with_variance);
+    // `weighted`: add_weighted() will be called, and add() not.
+    Film(const FilmSettings& settings, const ColourMatching& matching, bool with_variance, bool weighted = false);
 
     // Adds one path: its Stokes vector at its four wavelengths.
     void add(std::size_t pixel, const StokesPacket& stokes, const Wavelengths& w, bool hit) {
@@ -69,6 +86,12 @@ class Film {
     // Counts a path that brought nothing (more).
     void add_count(std::size_t pixel, bool hit) {
         sums_[pixel * stride_ + bins_ + 4] += Float4{1.0f, hit ? 1.0f : 0.0f, 0.0f, 0.0f};
+    }
+    // Adds one path under a filter with lobes. Pixels are sums of weighted light over sums of weights, so that a
+    // constant picture stays constant.
+    void add_weighted(std::size_t pixel, const StokesPacket& stokes, const Wavelengths& w, bool hit, float weight) {
+        add(pixel, stokes * weight, w, hit);
+        weights_[pixel * weight_stride] += weight;
     }
     // Adds light without counting a path.
     void add_light(std::size_t pixel, const StokesPacket& stokes, const Wavelengths& w) {
@@ -96,8 +119,9 @@ class Film {
     double relative_noise() const;
     StokesImage develop() const;
     // All that the film knows, to be kept and put back. Bytes of the machine's own order.
-    std::array<std::span<std::byte>, 2> memory() {
-        return {std::as_writable_bytes(std::span(sums_)), std::as_writable_bytes(std::span(batches_))};
+    std::array<std::span<std::byte>, 3> memory() {
+        return {std::as_writable_bytes(std::span(sums_)), std::as_writable_bytes(std::span(batches_)),
+                std::as_writable_bytes(std::span(weights_))};
     }
     std::size_t pixel_count() const { return static_cast<std::size_t>(settings_.crop_width) * settings_.crop_height; }
 
@@ -125,6 +149,9 @@ class Film {
         return samples <= most_batches ? 1
                                        : static_cast<int>(std::bit_ceil(static_cast<unsigned>(samples)) / most_batches);
     }
+    // What a pixel's sums are divided by, and what had been added to it at the end of a batch.
+    float divisor(std::size_t pixel) const;
+    double weight_at_end(std::size_t pixel, int batch, double batch_samples) const;
     // Variances of the mean luminances of the Stokes components; infinite before the second batch.
     std::array<double, 4> variances_of_means(std::size_t pixel) const;
 
@@ -134,6 +161,10 @@ class Film {
     // [pixel][batch]: Y of the Stokes components at the end of the batch, summed from the first sample on. Empty: the
     // variance is not asked for.
     std::vector<Float4> batches_;
+    // [pixel][weight of all samples, weight at the end of each batch]. Empty: the weights are 1, or only their mean
+    // counts.
+    static constexpr int weight_stride = most_batches + 1;
+    std::vector<float> weights_;
     std::vector<float> bin_weight_;  // (visible range / number of wavelengths) / width of the bin
     std::vector<Nanometre> nanometres_;
 };

@@ -137,9 +137,7 @@ void Geometry::surface_of_analytic(const AnalyticShape& s, const Ray& ray, const
         point.frame = Frame(point.geometric_normal);
     }
     if (needs_uv) {
-        const float phi = std::atan2(y, x);
-        point.uv = {(phi < 0 ? phi + 2 * pi_f : phi) * (0.5f * inv_pi_f),
-                    std::acos(std::clamp(s.n.dot(outward), -1.0f, 1.0f)) * inv_pi_f};
+        point.uv = s.spherical(outward);
     }
 }
 
@@ -182,6 +180,7 @@ bool Geometry::sample_sphere(const AnalyticShape& sphere, const Vec3& from, cons
         // From inside: uniform over the area.
         sample.normal = uniform_sphere(u);
         sample.position = sphere.o + sphere.radius * sample.normal;
+        if (needs_uv) sample.uv = sphere.spherical(sample.normal);
         sample.normal *= outside;
         const Vec3 d = sample.position - from;
         const float cos = std::abs(d.dot(sample.normal));
@@ -198,6 +197,7 @@ bool Geometry::sample_sphere(const AnalyticShape& sphere, const Vec3& from, cons
     const float along = std::sqrt(distance2) * cos - safe_sqrt(radius2 - distance2 * sin2);
     sample.normal = (from + along * direction - sphere.o).normalized();
     sample.position = sphere.o + sphere.radius * sample.normal;
+    if (needs_uv) sample.uv = sphere.spherical(sample.normal);
     sample.normal *= outside;
     sample.pdf = 1 / (2 * pi_f * one_minus_cos_max);
     return true;
@@ -212,6 +212,7 @@ bool Geometry::sample_shape(int index, const Vec3& from, const Vec2& u, ShapeSam
         const Vec3 &p0 = m.mesh->positions[i0], &p1 = m.mesh->positions[i1], &p2 = m.mesh->positions[i2];
         const float root = std::sqrt(choice.remainder), b1 = root * (1 - u.y()), b2 = root * u.y();
         sample.position = (1 - b1 - b2) * p0 + b1 * p1 + b2 * p2;
+        sample.uv = m.mesh->uv_at(choice.index, b1, b2);
         sample.normal = (p1 - p0).cross(p2 - p0).normalized();
         if (!m.mesh->normals.empty() && sample.normal.dot(m.mesh->normals[i0]) < 0) sample.normal = -sample.normal;
         if (m.flipped) sample.normal = -sample.normal;
@@ -229,6 +230,7 @@ bool Geometry::sample_shape(int index, const Vec3& from, const Vec2& u, ShapeSam
         const Vec2 p =
             s.kind == AnalyticShape::Kind::disk ? concentric_disk({rest, u.y()}) : Vec2(2 * rest - 1, 2 * u.y() - 1);
         sample.position = s.o + p.x() * s.a + p.y() * s.b;
+        sample.uv = {0.5f * (p.x() + 1), 0.5f * (p.y() + 1)};
         sample.normal = s.flipped ? Vec3(-s.n) : s.n;
     }
     const Vec3 d = from - sample.position;

@@ -53,6 +53,7 @@ struct SurfacePoint {
 // A point drawn on a shape as seen from another.
 struct ShapeSample {
     Vec3 position, normal;
+    Vec2 uv = Vec2::Zero();
     float pdf = 0;  // per solid angle at the other point
 };
 

@@ -8,6 +8,9 @@ namespace patina::render {
 
 namespace {
 
+// Below it a facet turns light by less than a float can tell from the mirror direction.
+constexpr float smallest_alpha = 1e-4f;
+
 // Solves F(x) = u F(cot theta) for F(x) = int_-inf^x (cos - t sin)_+ exp(-t^2)/sqrt(pi) dt, the distribution of the
 // slopes seen under theta (Heitz & d'Eon 2014, eq. 9; Jakob 2014), by Newton steps kept inside a shrinking bracket.
 float visible_slope(float cos_theta, float sin_theta, float u) {
@@ -45,29 +48,42 @@ Vec3 Microfacets::sample_beckmann(const Vec3& w, const Vec2& u) const {
 
 std::vector<ParameterDescriptor> microfacet_parameters() {
     return {{"distribution", "string", "", "beckmann", "ggx, beckmann", "distribution of facet normals"},
-            {"alpha", "number", "", "0.1", "0.0001 .. 2", "roughness"},
-            {"alpha_u", "number", "", "alpha", "0.0001 .. 2", "roughness along the tangent"},
-            {"alpha_v", "number", "", "alpha", "0.0001 .. 2", "roughness across the tangent"},
+            {"alpha", "number or texture", "", "0.1", "0.0001 .. 2", "roughness"},
+            {"alpha_u", "number or texture", "", "alpha", "0.0001 .. 2", "roughness along the tangent"},
+            {"alpha_v", "number or texture", "", "alpha", "0.0001 .. 2", "roughness across the tangent"},
             {"sample_visible", "boolean", "", "true", "", "accepted: visible normals are always sampled"}};
 }
 
-Microfacets microfacets_of(const Properties& node) {
-    Microfacets facets;
+MicrofacetField::MicrofacetField(MicrofacetKind kind, ScalarTexture alpha_u, ScalarTexture alpha_v) {
+    base_.kind = kind;
+    base_.alpha_x = alpha_u.values().front();
+    base_.alpha_y = alpha_v.values().front();
+    if (!alpha_u.varies() && !alpha_v.varies()) return;
+    alpha_ = std::make_shared<const std::array<ScalarTexture, 2>>(std::array{std::move(alpha_u), std::move(alpha_v)});
+}
+
+Microfacets MicrofacetField::varied(const Vec2& uv) const {
+    return {base_.kind, std::max((*alpha_)[0].at(uv), smallest_alpha), std::max((*alpha_)[1].at(uv), smallest_alpha)};
+}
+
+MicrofacetField microfacets_of(const Properties& node, const SceneResources& resources) {
     const std::string kind = node.string("distribution", "beckmann");
     if (kind != "ggx" && kind != "beckmann")
         throw input_error(node.location_of("distribution"), fmt::format("unknown microfacet distribution \"{}\"", kind),
                           "", did_you_mean(kind, {"ggx", "beckmann"}));
-    facets.kind = kind == "ggx" ? MicrofacetKind::ggx : MicrofacetKind::beckmann;
-    const double alpha = node.number("alpha", 0.1);
-    facets.alpha_x = static_cast<float>(node.number("alpha_u", alpha));
-    facets.alpha_y = static_cast<float>(node.number("alpha_v", alpha));
-    // Below 1e-4 a facet turns light by less than a float can tell from the mirror direction.
-    for (const auto& [name, value] : {std::pair{"alpha_u", facets.alpha_x}, {"alpha_v", facets.alpha_y}})
-        if (!(value >= 1e-4f && value <= 2.0f))
-            throw input_error(node.location_of(node.has(name) ? name : "alpha"), "roughness out of range",
-                              fmt::format("it is {}", value), "keep it between 0.0001 and 2, or use the smooth model");
+    const ScalarTexture both = ScalarTexture::read(node, "alpha", 0.1, resources);
+    const auto alpha = [&](const char* name) {
+        const bool given = node.has(name);
+        ScalarTexture texture = given ? ScalarTexture::read(node, name, 0.1, resources) : both;
+        for (float value : texture.values())
+            if (!(value >= smallest_alpha || texture.varies()) || !(value <= 2.0f))
+                throw input_error(node.location_of(given ? name : "alpha"), "roughness out of range",
+                                  fmt::format("it is {}", value),
+                                  "keep it between 0.0001 and 2, or use the smooth model");
+        return texture;
+    };
     node.boolean("sample_visible", true);
-    return facets;
+    return {kind == "ggx" ? MicrofacetKind::ggx : MicrofacetKind::beckmann, alpha("alpha_u"), alpha("alpha_v")};
 }
 
 }  // namespace patina::render

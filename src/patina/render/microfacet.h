@@ -5,10 +5,13 @@
 // for refraction; Heitz (2014), Understanding the masking-shadowing function; Heitz (2018), Sampling the GGX
 // distribution of visible normals. All directions are local, z is the macroscopic normal.
 
+#include <array>
+#include <memory>
 #include <vector>
 
 #include "patina/core/properties.h"
 #include "patina/render/render.h"
+#include "patina/render/texture.h"
 #include "patina/render/vec.h"
 
 namespace patina::render {
@@ -66,9 +69,26 @@ struct Microfacets {
     Vec3 sample_beckmann(const Vec3& w, const Vec2& u) const;
 };
 
+// Microfacets whose roughness may vary over the surface.
+class MicrofacetField {
+  public:
+    MicrofacetField() = default;
+    MicrofacetField(const Microfacets& everywhere) : base_(everywhere) {}
+    MicrofacetField(MicrofacetKind kind, ScalarTexture alpha_u, ScalarTexture alpha_v);
+
+    Microfacets at(const Vec2& uv) const { return alpha_ ? varied(uv) : base_; }
+
+  private:
+    Microfacets varied(const Vec2& uv) const;
+
+    Microfacets base_;
+    std::shared_ptr<const std::array<ScalarTexture, 2>> alpha_;  // null: the same everywhere
+};
+
 // The microfacets of a plugin's `distribution` and `alpha` (or `alpha_u` and `alpha_v`), with Mitsuba's defaults; and
-// what they are called in its manual. Throws Error(input) for roughness outside 0.0001 .. 2.
-Microfacets microfacets_of(const Properties& node);
+// what they are called in its manual. Throws Error(input) for roughness outside 0.0001 .. 2; what a picture has below
+// is held there, as Mitsuba does.
+MicrofacetField microfacets_of(const Properties& node, const SceneResources& resources);
 std::vector<ParameterDescriptor> microfacet_parameters();
 
 }  // namespace patina::render

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include "patina/core/error.h"
+#include "patina/render/aov.h"
 #include "patina/render/bsdf_set.h"
 #include "patina/render/medium.h"
+#include "patina/render/texel_grid.h"
 
 namespace patina::render {
 
@@ -27,11 +29,16 @@ void add_shapes(std::vector<PluginDescriptor>& all) {
     shape("rectangle", "The square -1 .. 1 in x and y, normal along +z.", {});
     shape("disk", "The unit disk in x and y, normal along +z.", {});
     shape("cube", "The cube -1 .. 1, normals outward.", {});
+    shape("cylinder", "The side of a cylinder, normals outward; 512 facets with its own normals.",
+          {{"p0", "point", "scene units", "0, 0, 0", "", "middle of one end"},
+           {"p1", "point", "scene units", "0, 0, 1", "", "middle of the other"},
+           {"radius", "number", "scene units", "1", "> 0", "its radius"}});
     for (const char* name : {"obj", "ply"})
         shape(name, "A triangle mesh from a file.",
               {{"filename", "path", "", "", "", "the file"},
                {"face_normals", "boolean", "", "false", "", "flat shading, the file's normals unused"},
-               {"flip_tex_coords", "boolean", "", "true for obj", "", "v counts from the top of the texture"}});
+               {"flip_tex_coords", "boolean", "", "true for obj", "",
+                "v becomes 1 - v, for files whose v grows upwards"}});
 }
 
 const std::vector<ParameterDescriptor> polarization = {
@@ -55,7 +62,7 @@ void add_emitters(std::vector<PluginDescriptor>& all) {
     const ParameterDescriptor sun = {"sun_direction", "vector", "",
                                      "0, 1, 0",       "",       "towards the sun, for polarization \"rayleigh\""};
     emitter("area", "A shape that shines from its outside.",
-            {{"radiance", "spectrum", "W/(m^2 sr nm)", "1", ">= 0", "the same into every direction"}});
+            {{"radiance", "spectrum or texture", "W/(m^2 sr nm)", "1", ">= 0", "the same into every direction"}});
     emitter("point", "A point that shines into every direction.",
             {{"position", "point", "scene units", "0, 0, 0", "", "its place"},
              to_world,
@@ -92,7 +99,9 @@ void add_sensors(std::vector<PluginDescriptor>& all) {
     camera.push_back({"fov", "number", "degree", "39.6", "0 .. 180", "field of view along fov_axis"});
     camera.push_back({"fov_axis", "string", "", "x", "x, y, diagonal, smaller, larger", "what fov measures"});
     camera.push_back({"focal_length", "string", "mm", "50mm", "> 0", "instead of fov, on 36 x 24 mm film"});
-    sensor("perspective", "Pinhole camera.", camera);
+    std::vector<ParameterDescriptor> pinhole = camera;
+    pinhole.push_back({"focus_distance", "number", "scene units", "", "", "accepted, without effect"});
+    sensor("perspective", "Pinhole camera.", pinhole);
     camera.push_back({"aperture_radius", "number", "scene units", "", ">= 0", "of the lens"});
     camera.push_back({"focus_distance", "number", "scene units", "", "> 0", "of the plane in focus"});
     sensor("thinlens", "Camera with depth of field.", camera);
@@ -125,12 +134,19 @@ void add_film(std::vector<PluginDescriptor>& all) {
                         {"component_format", "string", "", "float32", "", "accepted, without effect"},
                         {"banner", "boolean", "", "false", "", "accepted, without effect"},
                         {"sample_border", "boolean", "", "false", "", "accepted, without effect"}}});
-    for (const char* name : {"box", "tent", "gaussian"})
-        all.push_back({"rfilter",
-                       name,
-                       "Reconstruction filter, sampled.",
-                       {{"radius", "number", "pixel", "0.5 (box), 1 (tent)", "> 0", "reach"},
-                        {"stddev", "number", "pixel", "0.5", "> 0", "of the gaussian, cut at 4"}}});
+    const char* positive = "Reconstruction filter, sampled.";
+    all.push_back({"rfilter", "box", positive, {{"radius", "number", "pixel", "0.5", "0.001 .. 100", "reach"}}});
+    all.push_back({"rfilter", "tent", positive, {{"radius", "number", "pixel", "1", "0.001 .. 100", "reach"}}});
+    all.push_back(
+        {"rfilter", "gaussian", positive, {{"stddev", "number", "pixel", "0.5", "0.001 .. 100", "cut at 4 of it"}}});
+    const char* lobed = "Reconstruction filter with negative lobes; needs more samples.";
+    all.push_back({"rfilter",
+                   "mitchell",
+                   lobed,
+                   {{"A", "number", "", "1/3", "0 .. 1", "B of Mitchell and Netravali (1988)"},
+                    {"B", "number", "", "1/3", "0 .. 1", "their C"}}});
+    all.push_back({"rfilter", "catmullrom", lobed, {}});
+    all.push_back({"rfilter", "lanczos", lobed, {{"lobes", "integer", "pixel", "3", "1 .. 16", "reach"}}});
     for (const char* name : {"independent", "stratified", "multijitter", "orthogonal", "ldsampler"})
         all.push_back({"sampler",
                        name,
@@ -177,18 +193,18 @@ void add_integrators(std::vector<PluginDescriptor>& all) {
                     {"solver", "string", "", "lu", "lu, jacobi, gauss_seidel, neumann", "of the linear system"},
                     {"gather", "boolean", "", "true", "", "gather light at each point; false shows the patches"},
                     {"hide_emitters", "boolean", "", "false", "", "emitters do not show directly"}}});
+    all.push_back({"integrator",
+                   "aov",
+                   "Wraps an integrator; what the camera sees first becomes further channels of the picture.",
+                   {{"aovs", "string", "", "", "", "\"name:kind, ...\" of " + kinds_of_aovs()}}});
     all.push_back({"integrator", "stokes", "Wraps an integrator; every picture has Stokes components anyway.", {}});
-    all.push_back({"texture",
-                   "bitmap",
-                   "A picture as a reflectance.",
-                   {{"filename", "path", "", "", "", "the picture"},
-                    {"raw", "boolean", "", "false", "", "values are data, not sRGB"},
-                    {"to_uv", "transform", "", "identity", "", "of texture coordinates"}}});
+    all.push_back({"texture", "bitmap", "A picture as a reflectance, a number or a radiance over a surface.",
+                   picture_parameters()});
     all.push_back({"texture",
                    "checkerboard",
-                   "Two reflectances in squares.",
-                   {{"color0", "spectrum", "", "0.4", "0 .. 1", "of the first square"},
-                    {"color1", "spectrum", "", "0.2", "0 .. 1", "of its neighbours"},
+                   "Two spectra or numbers in squares.",
+                   {{"color0", "spectrum", "", "0.4", "", "of the first square"},
+                    {"color1", "spectrum", "", "0.2", "", "of its neighbours"},
                     {"to_uv", "transform", "", "identity", "", "of texture coordinates"}}});
 }
 
@@ -211,6 +227,43 @@ const std::vector<PluginDescriptor>& plugins() {
     return registry;
 }
 
+namespace {
+
+// What stands in for plugins of Mitsuba 3 that are not here.
+struct WayOut {
+    const char *category, *name, *instead;
+};
+constexpr WayOut ways_out[] = {
+    {"bsdf", "measured", "convert the table to .pbsdf and use \"measured_polarized\", or use \"merl\""},
+    {"bsdf", "principledthin", "use \"thindielectric\", or \"blendbsdf\" of it and \"diffuse\""},
+    {"bsdf", "hair", "use \"roughdielectric\""},
+    {"emitter", "sunsky",
+     "write an \"envmap\" from another program, or use \"constant\" with polarization "
+     "\"rayleigh\" and a \"directional\" sun"},
+    {"emitter", "sky", "write an \"envmap\" from another program, or use \"constant\" with polarization \"rayleigh\""},
+    {"emitter", "sun", "use \"directional\""},
+    {"emitter", "projector", "use \"spot\", or \"area\" with a textured radiance"},
+    {"emitter", "directionalarea", "use \"directional\" or \"area\""},
+    {"shape", "serialized", "convert the mesh to PLY or OBJ"},
+    {"shape", "bsplinecurve", "convert the curves to a mesh"},
+    {"shape", "linearcurve", "convert the curves to a mesh, or use \"cylinder\""},
+    {"shape", "heightfield", "convert it to a mesh"},
+    {"shape", "sdfgrid", "convert it to a mesh"},
+    {"medium", "heterogeneous", "use \"homogeneous\""},
+    {"texture", "mesh_attribute", "bake the colours into a bitmap texture"},
+    {"texture", "volume", "bake the colours into a bitmap texture"},
+    {"integrator", "moment", "every picture has variance channels; name the inner integrator alone"},
+    {"integrator", "depth", "use \"aov\" with aovs=\"d:depth\""},
+};
+
+std::string way_out(const Properties& node, const std::vector<std::string>& names) {
+    for (const WayOut& way : ways_out)
+        if (node.category == way.category && node.type == way.name) return way.instead;
+    return did_you_mean(node.type, names);
+}
+
+}  // namespace
+
 const PluginDescriptor& expect_plugin(const Properties& node) {
     std::vector<std::string> names;
     for (const PluginDescriptor& plugin : plugins()) {
@@ -218,8 +271,7 @@ const PluginDescriptor& expect_plugin(const Properties& node) {
         if (plugin.name == node.type) return plugin;
         names.push_back(plugin.name);
     }
-    throw input_error(node.where, fmt::format("unknown {} \"{}\"", node.category, node.type), "",
-                      did_you_mean(node.type, names));
+    throw input_error(node.where, fmt::format("unknown {} \"{}\"", node.category, node.type), "", way_out(node, names));
 }
 
 void expect_known_properties(const Properties& node) {

@@ -4,13 +4,13 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
-#include <mutex>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include "patina/core/error.h"
 #include "patina/core/parallel.h"
+#include "patina/render/aov.h"
 #include "patina/render/delta_light_at_sensor.h"
 #include "patina/render/non_finite_samples.h"
 #include "patina/render/picture_parts.h"
@@ -83,7 +83,7 @@ std::unique_ptr<Integrator> integrator_of(const Scene& scene, const RenderOption
     if (node) {
         // Keep what the scene says about its own integrator where the other knows it too.
         const PluginDescriptor& plugin = expect_plugin(chosen);
-        for (const auto& entry : (node->type == "stokes" ? *node->only_child("integrator") : *node).entries)
+        for (const auto& entry : wrapped_integrator(*node).entries)
             if (std::any_of(plugin.parameters.begin(), plugin.parameters.end(),
                             [&](const ParameterDescriptor& p) { return p.name == entry.name; }))
                 chosen.entries.push_back(entry);
@@ -130,7 +130,7 @@ class Renderer {
           integrator_(integrator_of(scene, options)),
           expressions_(expressions_of(options)),
           classes_(expressions_),
-          film_(settings_, *scene.matching, true),
+          film_(settings_, *scene.matching, true, sums_weights()),
           seed_(options.seed.value_or(scene.seed)) {
         if (!expressions_.empty() && !integrator_->knows_paths())
             throw Error(ErrorKind::usage,
@@ -140,7 +140,7 @@ class Renderer {
             throw Error(ErrorKind::usage, "the scene has media, which this integrator does not follow; use volumetric");
         if (!expressions_.empty())
             for (int c = 0; c < classes_.class_count(); ++c)
-                class_films_.emplace_back(settings_, *scene.matching, false);
+                class_films_.emplace_back(settings_, *scene.matching, false, sums_weights());
         integrator_->prepare(problem(), control);
     }
 
@@ -170,7 +170,7 @@ class Renderer {
     std::uint64_t seed() const { return seed_; }
     const NonFiniteSamples& non_finite() const { return non_finite_; }
     std::size_t pixel_count() const { return film_.pixel_count(); }
-
+    std::vector<ImageLayer> layers(int samples) const { return aov_layers(scene_, settings_, sensor_, samples, seed_); }
     Pictures develop() const {
         Pictures pictures{film_.develop(), {}, {}};
         if (expressions_.empty()) return pictures;
@@ -214,6 +214,8 @@ class Renderer {
     }
 
   private:
+    // Splats share their pixels with samples of other places: then the mean of the filter's weights is divided by.
+    bool sums_weights() const { return settings_.filter.has_lobes() && !integrator_->splats(); }
     TransportProblem problem() const { return {scene_, sensor_, classes_}; }
 
     void add_samples(int first, int last) {
@@ -251,6 +253,7 @@ class Renderer {
         explicit SampleBlock(int classes) : records(block_size, PathRecord(classes)), samples(block_size) {}
         int count = 0;
         std::array<Place, block_size> places;
+        std::array<float, block_size> weights;  // by the filter
         std::vector<PathRecord> records;
         std::vector<CameraSample> samples;
     };
@@ -270,7 +273,7 @@ class Renderer {
             if (sensor_.is_meter())
                 record.add(delta_light_at_sensor(scene_, sensor_, sample.camera, sample.wavelengths),
                            classes_.path_class(LightPathClassifier::eye));
-            const bool added = add_sample(block.places[i], record, sample.wavelengths);
+            const bool added = add_sample(block.places[i], record, sample.wavelengths, block.weights[i]);
             const int done = block.places[i].sample + 1;
             if (!splats && Film::batch_ends(done)) film_.end_batch(window_pixel(block.places[i]), done);
             if (splats && added) splats->insert(splats->end(), record.splats.begin(), record.splats.end());
@@ -298,7 +301,8 @@ class Renderer {
         for (int i = first; i < last; ++i) {
             const int k = i - first;
             CameraSample& s = block.samples[i];
-            const Vec2 offset = settings_.filter.sample({film_x[k], film_y[k]});
+            const auto [offset, weight] = settings_.filter.sample({film_x[k], film_y[k]});
+            block.weights[i] = weight;
             film_x[k] = (settings_.crop_x + block.places[i].x + 0.5f + offset.x()) / settings_.width;
             film_y[k] = (settings_.crop_y + block.places[i].y + 0.5f + offset.y()) / settings_.height;
             // The hero's quarter of the range and the place in it are drawn apart: all four wavelengths share the
@@ -316,7 +320,7 @@ class Renderer {
     }
 
     // False: the sample is left out, for it is not finite.
-    bool add_sample(const SampleBlock::Place& place, const PathRecord& record, const Wavelengths& wavelengths) {
+    bool add_sample(const SampleBlock::Place& place, const PathRecord& record, const Wavelengths& w, float weight) {
         const StokesPacket total = record.total();
         StokesPacket probe = total;
         for (const Splat& splat : record.splats) probe += splat.stokes * 0.0f;
@@ -325,13 +329,18 @@ class Renderer {
             return false;
         }
         const std::size_t pixel = window_pixel(place);
-        film_.add(pixel, total, wavelengths, record.hit);
-        for (std::size_t c = 0; c < class_films_.size(); ++c) {
-            const StokesPacket& stokes = record.of_class(static_cast<int>(c));
-            if (!all_zero(stokes)) class_films_[c].add_light(pixel, stokes, wavelengths);
-            class_films_[c].add_count(pixel, record.hit);
-        }
+        add_to(film_, pixel, total, w, record.hit, weight);
+        for (std::size_t c = 0; c < class_films_.size(); ++c)
+            add_to(class_films_[c], pixel, record.of_class(static_cast<int>(c)), w, record.hit, weight);
         return true;
+    }
+
+    void add_to(Film& film, std::size_t pixel, const StokesPacket& light, const Wavelengths& w, bool hit,
+                float weight) {
+        if (sums_weights()) return film.add_weighted(pixel, light, w, hit, weight);
+        if (settings_.filter.has_lobes()) weight /= settings_.filter.mean_weight();
+        if (&film == &film_ || !all_zero(light)) film.add_light(pixel, weight == 1 ? light : light * weight, w);
+        film.add_count(pixel, hit);
     }
 
     // Gives each pixel of the window its share by the reconstruction filter. There is one path from the lamps for every
@@ -348,7 +357,7 @@ class Renderer {
                   y1 = std::min(settings_.crop_height - 1, static_cast<int>(std::floor(y + reach)));
         for (int row = y0; row <= y1; ++row)
             for (int column = x0; column <= x1; ++column) {
-                const StokesPacket light = splat.stokes * (share * settings_.filter.density(Vec2(x - column, y - row)));
+                const StokesPacket light = splat.stokes * (share * settings_.filter.value(Vec2(x - column, y - row)));
                 const std::size_t place = static_cast<std::size_t>(row) * settings_.crop_width + column;
                 film_.add_light(place, light, splat.wavelengths);
                 if (!class_films_.empty()) class_films_[splat.path_class].add_light(place, light, splat.wavelengths);
@@ -467,6 +476,7 @@ Pictures render_parts(const Scene& scene, const RenderOptions& options, const Jo
     expect_finite(renderer, outcome.samples);
 
     Pictures pictures = renderer.develop();
+    pictures.whole.layers = renderer.layers(outcome.samples);
     std::map<std::string, std::string>& metadata = pictures.whole.metadata;
     metadata = scene.notes;
     metadata.merge(renderer.integrator_notes());

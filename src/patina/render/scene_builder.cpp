@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -140,17 +141,41 @@ class SceneBuilder {
             if (const auto child = group >= 0 ? node.only_child(lamp_or_meter) : nullptr)
                 throw input_error(child->where,
                                   fmt::format("no {} can stand in what moves or is copied", child->category));
-        const auto material = node.only_child("bsdf");
+        auto material = node.only_child("bsdf");
+        if (material && left_handed(node) && holds_relief(*material)) material = mirrored(material);
         scene_->geometry.shapes[index].bsdf = material ? bsdf_index(material) : default_bsdf();
         scene_->geometry.shapes[index].interior = side_medium(node, "interior");
         scene_->geometry.shapes[index].exterior = side_medium(node, "exterior");
         if (const auto emitter = node.only_child("emitter")) {
             scene_->geometry.shapes[index].emitter = static_cast<int>(emitters_.size());
             states_.push_back(build_polarization(*emitter, node.transform("to_world")));
-            emitters_.push_back(AreaEmitter{index, build_area_radiance(*emitter)});
+            emitters_.push_back(AreaEmitter{index, build_area_radiance(*emitter, resources_)});
         }
         for (const auto& sensor : node.children_of("sensor")) sensors_.push_back({sensor, index});
         expect_known_properties(node);
+    }
+
+    // Do u, v and the normal of a shape make a left-handed system? Reliefs want to know.
+    static bool left_handed(const Properties& shape) {
+        if (shape.type == "obj" || shape.type == "ply") return shape.boolean("flip_tex_coords", shape.type == "obj");
+        return shape.type == "sphere";
+    }
+    static bool holds_relief(const Properties& model) {
+        return model.type == "bumpmap" ||
+               std::any_of(model.children.begin(), model.children.end(), [](const auto& child) {
+                   return child.node->category == "bsdf" && holds_relief(*child.node);
+               });
+    }
+    // The same model with its reliefs mirrored, one copy for all shapes.
+    std::shared_ptr<const Properties> mirrored(const std::shared_ptr<const Properties>& model) {
+        auto& copy = mirrored_[model.get()];
+        if (copy) return copy;
+        auto changed = std::make_shared<Properties>(*model);
+        if (model->type == "bumpmap" && !model->has("mirrored"))
+            changed->entries.push_back({"mirrored", true, model->where});
+        for (auto& child : changed->children)
+            if (child.node->category == "bsdf") child.node = mirrored(child.node);
+        return copy = changed;
     }
 
     static bool any_texture(const Properties& node) {
@@ -167,6 +192,7 @@ class SceneBuilder {
     BsdfBuilder bsdf_builder_;
     std::map<const Properties*, int> bsdf_of_node_;  // -1 while being built
     std::map<const Properties*, int> medium_of_node_;
+    std::map<const Properties*, std::shared_ptr<const Properties>> mirrored_;
     int default_bsdf_ = -1;
     InstanceBuilder instances_{scene_->geometry,
                                [this](const Properties& node, int group) { build_shape(node, group); }};

@@ -63,6 +63,8 @@ void build_camera(const Properties& node, double aspect, Sensor& sensor) {
     // Mitsuba clips at these planes; a path tracer has no need of them.
     node.number("near_clip", 0.01);
     node.number("far_clip", 1e4);
+    // A pinhole has everything in focus; Mitsuba's own Cornell box names a distance nevertheless.
+    if (node.type == "perspective") node.number("focus_distance", 1.0);
     if (node.type == "orthographic") {
         // The film is -1 .. 1 along x of the sensor's own space, whose scale counts.
         sensor.kind = Sensor::Kind::orthographic;

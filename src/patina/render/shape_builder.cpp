@@ -1,7 +1,9 @@
 #include "patina/render/shape_builder.h"
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "patina/core/constants.h"
 #include "patina/core/error.h"
 #include "patina/render/plugins.h"
 
@@ -98,6 +100,52 @@ void check_mesh(const TriangleMesh& mesh, const SourceLocation& where) {
         throw input_error(where, what + " has another number of normals or texture coordinates than of vertices");
 }
 
+// The side of a `cylinder` from p0 to p1, normals outward, without lids. Facets whose area is that of the cylinder;
+// their normals are its own.
+TriangleMesh cylinder(const Properties& node) {
+    using Eigen::Vector3d;
+    const Vector3d p0 = node.vector("p0", Vector3d::Zero()), p1 = node.vector("p1", Vector3d::UnitZ());
+    const double radius = node.number("radius", 1.0);
+    if (!(radius > 0) || !((p1 - p0).norm() > 0) || !p0.allFinite() || !p1.allFinite())
+        throw input_error(node.location_of(radius > 0 ? "p1" : "radius"), "the cylinder has no area",
+                          fmt::format("its radius is {}, its length {}", radius, (p1 - p0).norm()));
+    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), p1 - p0);
+    constexpr int facets = 512;
+    const double reach = radius * (pi / facets) / std::sin(pi / facets);
+    TriangleMesh mesh;
+    mesh.name = "cylinder";
+    for (int i = 0; i <= facets; ++i) {
+        const double phi = 2 * pi * i / facets;
+        const Vector3d outward = turn * Vector3d(std::cos(phi), std::sin(phi), 0);
+        for (const Vector3d& end : {p0, p1}) {
+            mesh.uvs.emplace_back(static_cast<float>(i) / facets, mesh.positions.size() % 2 ? 1.0f : 0.0f);
+            mesh.positions.push_back((end + reach * outward).cast<float>());
+            mesh.normals.push_back(outward.cast<float>());
+        }
+    }
+    for (std::uint32_t i = 0; i < 2 * facets; i += 2) {
+        mesh.triangles.push_back({i, i + 2, i + 3});
+        mesh.triangles.push_back({i, i + 3, i + 1});
+    }
+    return mesh;
+}
+
+// The mesh a file holds, with normals.
+TriangleMesh mesh_of_file(const Properties& node, const SceneResources& resources) {
+    const std::string file = node.string("filename");
+    const SourceLocation where = node.location_of("filename");
+    if (!resources.load_mesh) throw Error(ErrorKind::not_built, where.to_string() + ": mesh files are not available");
+    TriangleMesh mesh = *resources.load_mesh(file, node.type);
+    check_mesh(mesh, where);
+    if (node.boolean("flip_tex_coords", node.type == "obj"))
+        for (Vec2& uv : mesh.uvs) uv.y() = 1 - uv.y();
+    if (node.boolean("face_normals", false))
+        mesh.normals.clear();
+    else if (mesh.normals.empty())
+        mesh.normals = smooth_normals(mesh);
+    return mesh;
+}
+
 void place_mesh(TriangleMesh& mesh, const Eigen::Matrix4d& m) {
     if (m.isIdentity(0)) return;
     const Eigen::Matrix3d linear = m.block<3, 3>(0, 0), for_normals = linear.inverse().transpose();
@@ -108,16 +156,9 @@ void place_mesh(TriangleMesh& mesh, const Eigen::Matrix4d& m) {
 }
 
 MeshShape mesh_shape(const Properties& node, const SceneResources& resources, float& area) {
-    const std::string file = node.string("filename");
     const SourceLocation where = node.location_of("filename");
-    if (!resources.load_mesh) throw Error(ErrorKind::not_built, where.to_string() + ": mesh files are not available");
-    auto mesh = std::make_shared<TriangleMesh>(*resources.load_mesh(file, node.type));
-    check_mesh(*mesh, where);
-    node.boolean("flip_tex_coords", node.type == "obj");
-    if (node.boolean("face_normals", false))
-        mesh->normals.clear();
-    else if (mesh->normals.empty())
-        mesh->normals = smooth_normals(*mesh);
+    auto mesh =
+        std::make_shared<TriangleMesh>(node.type == "cylinder" ? cylinder(node) : mesh_of_file(node, resources));
     place_mesh(*mesh, placement(node));
 
     // Drop triangles without area: nothing can hit them, and they have no normal.
@@ -165,7 +206,7 @@ int append_shape(const Properties& node, const SceneResources& resources, Geomet
     const bool flip = node.boolean("flip_normals", false);
     Shape shape;
     shape.group = group;
-    if (node.type == "obj" || node.type == "ply") {
+    if (node.type == "obj" || node.type == "ply" || node.type == "cylinder") {
         MeshShape mesh = mesh_shape(node, resources, shape.area);
         mesh.shape = index;
         mesh.group = group;

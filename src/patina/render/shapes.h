@@ -72,6 +72,13 @@ struct AnalyticShape {
         if (kind != Kind::sphere) frame = Frame(flipped ? Vec3(-n) : n, a);
     }
 
+    // Texture coordinates of a sphere: azimuth and polar angle.
+    Vec2 spherical(const Vec3& outward) const {
+        const float phi = std::atan2(b.dot(outward), a.dot(outward));
+        return {(phi < 0 ? phi + 2 * pi_f : phi) * (0.5f * inv_pi_f),
+                std::acos(std::clamp(n.dot(outward), -1.0f, 1.0f)) * inv_pi_f};
+    }
+
     // Distance to the nearest intersection beyond 0, infinite when there is none; u, v of planes.
     template <class F>
     F distance(const RayOf<F>& ray, F& u, F& v) const {

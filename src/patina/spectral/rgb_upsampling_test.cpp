@@ -63,6 +63,17 @@ TEST(RgbUpsampling, EmissionIsD65TimesTheColour) {
     }
 }
 
+// The colour of a property of matter is a linear functional of its spectrum, whatever its brightness.
+TEST(SceneSpectrum, AColourOfMatterIsASmoothSpectrumOfThatColour) {
+    using Kind = SpectrumSpec::Kind;
+    const Vector3d aluminium_k(9.22387, 6.26952, 4.837);
+    const SpectralFunction k = property_spectrum({Kind::rgb, {}, {aluminium_k[0], aluminium_k[1], aluminium_k[2]}});
+    // The upsampling's own 1e-3, at the scale of twice the brightest component.
+    EXPECT_LT((colour_under_d65(k) - aluminium_k).cwiseAbs().maxCoeff(), 1e-3 * 2 * aluminium_k[0]);
+    EXPECT_EQ(property_spectrum({Kind::rgb, {}, {1.5, 1.5, 1.5}})(412), 1.5);
+    EXPECT_THROW(property_spectrum({Kind::rgb, {}, {1.5, -1, 1.5}}), Error);
+}
+
 TEST(SceneSpectrum, MeaningDependsOnTheUse) {
     using Kind = SpectrumSpec::Kind;
     const SpectrumSpec grey{Kind::uniform, {}, {0.5}}, colour{Kind::rgb, {}, {0.5, 0.2, 0.1}};
@@ -77,7 +88,7 @@ TEST(SceneSpectrum, MeaningDependsOnTheUse) {
 
     const SourceLocation where{"scene.xml", 3, 5};
     EXPECT_THROW(reflectance_spectrum(body, where), Error);
-    EXPECT_THROW(property_spectrum(colour, where), Error);
+    EXPECT_THROW(property_spectrum(body, where), Error);
     EXPECT_THROW(reflectance_spectrum({Kind::uniform, {}, {1.5}}, where), Error);
     EXPECT_THROW(reflectance_spectrum({Kind::rgb, {}, {0.5, 1.5, 0.5}}, where), Error);
     EXPECT_THROW(emission_spectrum({Kind::uniform, {}, {-1}}, where), Error);

@@ -46,6 +46,14 @@ Eigen::Vector3d rgb_of(const SpectrumSpec& spec) {
     return {spec.values[0], spec.values[1], spec.values[2]};
 }
 
+// A smooth spectrum for a colour of any brightness. Components up to 1/2 leave the smooth curve room to overshoot.
+SpectralFunction scaled_colour(const Eigen::Vector3d& rgb) {
+    const double brightest = rgb.maxCoeff();
+    if (rgb.minCoeff() == brightest) return Spectrum(brightest);
+    const double scale = brightest > 1 ? 2 * brightest : 1.0;
+    return [scale, smooth = upsampled_reflectance(rgb / scale)](double nm) { return scale * smooth(nm); };
+}
+
 constexpr double largest_finite = std::numeric_limits<double>::max();
 
 }  // namespace
@@ -67,10 +75,11 @@ SpectralFunction emission_spectrum(const SpectrumSpec& spec, const SourceLocatio
 }
 
 SpectralFunction property_spectrum(const SpectrumSpec& spec, const SourceLocation& where) {
-    if (spec.kind == Kind::blackbody || spec.kind == Kind::rgb)
-        throw input_error(where, "a colour or a black body is no property of matter", {},
+    if (spec.kind == Kind::blackbody)
+        throw input_error(where, "a black body is no property of matter", {},
                           "give one number, wavelengths with values, or a built-in material");
     expect_values(spec, largest_finite, "property of matter", where);
+    if (spec.kind == Kind::rgb) return scaled_colour(rgb_of(spec));
     return plain_spectrum(spec, Outside::hold, where);
 }
 

@@ -17,7 +17,8 @@ SpectralFunction reflectance_spectrum(const SpectrumSpec& spec, const SourceLoca
 SpectralFunction emission_spectrum(const SpectrumSpec& spec, const SourceLocation& where = {});
 
 // A property of matter without an upper bound (refractive index, extinction coefficient), not negative; samples are
-// held outside their range. rgb, which has no meaning here, is refused as a black body is.
+// held outside their range. rgb becomes the smooth spectrum that a reflectance of this colour would have, scaled where
+// it is brighter than one, as Mitsuba 3 does with the metals of older scenes; no measured index comes out of it.
 SpectralFunction property_spectrum(const SpectrumSpec& spec, const SourceLocation& where = {});
 
 }  // namespace patina::spectral

@@ -17,51 +17,32 @@ void to_outer(ScatteringMatrix& m, const Frame& frame) {
 }
 
 // The picture and the model that both plugins take.
-std::shared_ptr<const Bitmap> read_picture(const Properties& node, const BsdfBuilder& builder, NormalMap& map) {
+std::shared_ptr<const Bitmap> read_data(const Properties& node, const BsdfBuilder& builder, NormalMap& map) {
     const auto models = node.children_of("bsdf");
-    const auto texture = node.named_child(node.type);
+    // A bumpmap's texture may have any name, as in Mitsuba.
+    const auto named = node.named_child(node.type);
+    const auto texture = named ? named : node.only_child("texture");
     if (models.size() != 1 || !texture)
         throw input_error(node.where, fmt::format("{0} takes one model and one texture named \"{0}\"", node.type));
-    if (texture->category != "texture" || texture->type != "bitmap")
-        throw input_error(texture->where, fmt::format("a {} comes from a bitmap texture", node.type),
-                          fmt::format("it is a {} \"{}\"", texture->category, texture->type));
-    if (!builder.resources->load_bitmap)
-        throw Error(ErrorKind::not_built, texture->where.to_string() + ": image files are not available");
-    if (!texture->boolean("raw", true))
+    const TexturePicture picture = read_picture(*texture, *builder.resources, true);
+    if (!picture.raw)
         throw input_error(texture->location_of("raw"), "the picture is data, not colour", "", "set raw to true");
-    const Eigen::Matrix4d m = texture->transform("to_uv");
-    if (!(m.cwiseAbs().maxCoeff() < 1e6))
-        throw input_error(texture->location_of("to_uv"), "the transform of the texture is too large");
-    map.to_uv << static_cast<float>(m(0, 0)), static_cast<float>(m(0, 1)), static_cast<float>(m(0, 3)),
-        static_cast<float>(m(1, 0)), static_cast<float>(m(1, 1)), static_cast<float>(m(1, 3)), 0, 0, 1;
-    auto image = builder.resources->load_bitmap(texture->string("filename"), true);
-    expect_known_properties(*texture);
     const int channels = node.type == "normalmap" ? 3 : 1;
-    if (image->width < 1 || image->height < 1 || image->channel_count() < channels)
+    if (picture.image->channel_count() < channels)
         throw input_error(texture->location_of("filename"), fmt::format("a {} needs {} channels", node.type, channels));
-    for (float value : image->data)
+    for (float value : picture.image->data)
         if (!std::isfinite(value))
             throw input_error(texture->location_of("filename"), "the picture holds values that are not finite");
     map.model = builder.nested(models.front());
-    map.width = image->width, map.height = image->height;
-    map.normals.reserve(static_cast<std::size_t>(map.width) * map.height);
-    return image;
+    map.grid = picture.grid;
+    map.normals.reserve(picture.grid.size());
+    return picture.image;
 }
 
 }  // namespace
 
-// Bilinear between texel centres; repeated beyond 0 .. 1.
 Frame NormalMap::frame_at(const Vec2& uv) const {
-    const Vec3 mapped = to_uv * Vec3(uv.x(), uv.y(), 1);
-    const float x = (mapped.x() - std::floor(mapped.x())) * width - 0.5f;
-    const float y = (1 - (mapped.y() - std::floor(mapped.y()))) * height - 0.5f;
-    const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
-    Vec3 sum = Vec3::Zero();
-    for (int corner = 0; corner < 4; ++corner) {
-        const int column = (x0 + (corner & 1) + width) % width, row = (y0 + (corner >> 1) + height) % height;
-        const float wx = corner & 1 ? x - x0 : 1 - (x - x0), wy = corner >> 1 ? y - y0 : 1 - (y - y0);
-        sum += wx * wy * normals[static_cast<std::size_t>(row) * width + column];
-    }
+    const Vec3 sum = grid.at(uv).blend([&](std::size_t texel) { return normals[texel]; });
     return Frame(sum.normalized(), Vec3::UnitX());
 }
 
@@ -100,9 +81,9 @@ PluginDescriptor NormalMap::describe() {
 
 NormalMap NormalMap::build(const Properties& node, const BsdfBuilder& builder) {
     NormalMap map;
-    const auto image = read_picture(node, builder, map);
-    for (int y = 0; y < map.height; ++y)
-        for (int x = 0; x < map.width; ++x) {
+    const auto image = read_data(node, builder, map);
+    for (int y = 0; y < map.grid.height; ++y)
+        for (int x = 0; x < map.grid.width; ++x) {
             const float* texel = image->pixel(x, y);
             const Vec3 n = 2 * Vec3(texel[0], texel[1], texel[2]) - Vec3::Ones();
             // A normal that looks inwards is none.
@@ -116,22 +97,26 @@ PluginDescriptor BumpMap::describe() {
             "bumpmap",
             "Another model with the normals of a relief; takes one model and a raw bitmap of heights.",
             {{"bumpmap", "bitmap texture", "sides of the texture", "", "", "heights"},
-             {"scale", "number", "", "1", "", "factor on the heights"}}};
+             {"scale", "number", "", "1", "", "factor on the heights"},
+             {"mirrored", "boolean", "", "as the shape has it", "",
+              "u, v and normal are a left-handed system, as on spheres and flipped OBJ files"}}};
 }
 
 BumpMap BumpMap::build(const Properties& node, const BsdfBuilder& builder) {
     BumpMap map;
-    const auto image = read_picture(node, builder, map);
+    const auto image = read_data(node, builder, map);
     const double scale = node.number("scale", 1.0);
     if (!std::isfinite(scale)) throw input_error(node.location_of("scale"), "scale is not finite");
     const auto height = [&](int x, int y) {
-        return static_cast<float>(scale) * image->pixel((x + map.width) % map.width, (y + map.height) % map.height)[0];
+        return static_cast<float>(scale) *
+               image->pixel((x + map.grid.width) % map.grid.width, (y + map.grid.height) % map.grid.height)[0];
     };
-    // Central differences; v grows upwards.
-    for (int y = 0; y < map.height; ++y)
-        for (int x = 0; x < map.width; ++x)
-            map.normals.push_back(Vec3(-0.5f * map.width * (height(x + 1, y) - height(x - 1, y)),
-                                       -0.5f * map.height * (height(x, y - 1) - height(x, y + 1)), 1)
+    // Central differences; v grows with the rows, to the left of u about the normal or to its right.
+    const float left = node.boolean("mirrored", false) ? -0.5f : 0.5f;
+    for (int y = 0; y < map.grid.height; ++y)
+        for (int x = 0; x < map.grid.width; ++x)
+            map.normals.push_back(Vec3(-0.5f * map.grid.width * (height(x + 1, y) - height(x - 1, y)),
+                                       -left * map.grid.height * (height(x, y + 1) - height(x, y - 1)), 1)
                                       .normalized());
     return map;
 }

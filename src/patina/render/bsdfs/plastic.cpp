@@ -49,7 +49,7 @@ bool PlasticLayer::sample(const ShadingPoint& point, const Vec3& outgoing, float
     const Float4 eta = interior_index.at(w) / exterior_index.at(w);
     const FresnelPacket mirror = fresnel_dielectric(outgoing.z(), eta).reflection;
     const float share = specular_share(mirror.a);
-    if (u < share && !facets) {
+    if (u < share && !roughness) {
         const Vec3 axis = common_perpendicular(Vec3::UnitZ(), outgoing);
         sample.incident = Vec3(-outgoing.x(), -outgoing.y(), outgoing.z());
         sample.pdf = share;
@@ -61,7 +61,7 @@ bool PlasticLayer::sample(const ShadingPoint& point, const Vec3& outgoing, float
 
     // Draw from the facets or from the cosine; both may have led to the direction.
     if (u < share) {
-        const Vec3 m = facets->sample(outgoing, u2);
+        const Vec3 m = roughness->at(point.uv).sample(outgoing, u2);
         sample.incident = 2 * outgoing.dot(m) * m - outgoing;
     } else {
         sample.incident = cosine_hemisphere(u2);
@@ -82,7 +82,7 @@ bool PlasticLayer::evaluate(const ShadingPoint& point, const Vec3& outgoing, con
     const float share = specular_share(fresnel_dielectric(outgoing.z(), eta).reflection.a);
     add_body(point, outgoing, incident, eta, value.f);
     value.pdf = (1 - share) * incident.z() * inv_pi_f;
-    if (facets) value.pdf += share * add_facets(point, outgoing, incident, eta, value.f);
+    if (roughness) value.pdf += share * add_facets(point, outgoing, incident, eta, value.f);
     return true;
 }
 
@@ -110,9 +110,10 @@ void PlasticLayer::add_body(const ShadingPoint& point, const Vec3& outgoing, con
 // Adds the facets' part times cos_i; returns the density of their visible normals.
 float PlasticLayer::add_facets(const ShadingPoint& point, const Vec3& outgoing, const Vec3& incident, Float4 eta,
                                ScatteringMatrix& f) const {
+    const Microfacets facets = roughness->at(point.uv);
     const Vec3 m = (outgoing + incident).normalized();
-    const float scale = facets->density(m) / (4 * outgoing.z());
-    const float lambda_o = facets->lambda(outgoing), lambda_i = facets->lambda(incident);
+    const float scale = facets.density(m) / (4 * outgoing.z());
+    const float lambda_o = facets.lambda(outgoing), lambda_i = facets.lambda(incident);
     const FresnelPacket r = fresnel_dielectric(std::min(outgoing.dot(m), 1.0f), eta).reflection;
     const Float4 factor = specular_reflectance.at(*point.wavelengths, point.uv) * (scale / (1 + lambda_o + lambda_i));
     const Vec3 axis = common_perpendicular(outgoing, incident);
@@ -168,7 +169,7 @@ PluginDescriptor RoughPlastic::describe() {
 RoughPlastic RoughPlastic::build(const Properties& node, const BsdfBuilder& builder) {
     RoughPlastic p{common(node, builder, "polypropylene")};
     p.nonlinear = node.boolean("nonlinear", false);
-    p.facets = microfacets_of(node);
+    p.roughness = microfacets_of(node, *builder.resources);
     return p;
 }
 
@@ -179,7 +180,7 @@ PluginDescriptor PolarizedPlastic::describe() {
 PolarizedPlastic PolarizedPlastic::build(const Properties& node, const BsdfBuilder& builder) {
     PolarizedPlastic p{common(node, builder, "polypropylene")};
     p.internal_reflections = false;
-    p.facets = microfacets_of(node);
+    p.roughness = microfacets_of(node, *builder.resources);
     return p;
 }
 

@@ -31,11 +31,11 @@ struct PlasticLayer {
     Spectrum returned_inside;  // F
     Texture diffuse_reflectance, specular_reflectance;
     float diffuse_average = 0, specular_average = 0;
-    std::optional<Microfacets> facets;
+    std::optional<MicrofacetField> roughness;  // none: a mirror
     bool nonlinear = false;
     bool internal_reflections = true;
 
-    bool is_delta(const ShadingPoint&) const { return !facets && diffuse_reflectance.is_black(); }
+    bool is_delta(const ShadingPoint&) const { return !roughness && diffuse_reflectance.is_black(); }
     bool sample(const ShadingPoint& point, const Vec3& outgoing, float u, const Vec2& u2, BsdfSample& sample) const;
     bool evaluate(const ShadingPoint& point, const Vec3& outgoing, const Vec3& incident, BsdfValue& value) const;
 

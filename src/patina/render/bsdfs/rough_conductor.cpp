@@ -19,7 +19,7 @@ PluginDescriptor RoughConductor::describe() {
 
 RoughConductor RoughConductor::build(const Properties& node, const BsdfBuilder& builder) {
     const ConductorIndex index = conductor_index(node, builder);
-    return {index.n, index.k, microfacets_of(node),
+    return {index.n, index.k, microfacets_of(node, *builder.resources),
             Texture::reflectance(node, "specular_reflectance", 1.0f, *builder.resources)};
 }
 

@@ -15,13 +15,14 @@ namespace patina::render {
 
 struct RoughConductor {
     Spectrum n, k;
-    Microfacets facets;
+    MicrofacetField roughness;
     Texture specular_reflectance;
 
     bool is_delta(const ShadingPoint&) const { return false; }
 
     bool sample(const ShadingPoint& point, const Vec3& outgoing, float, const Vec2& u, BsdfSample& sample) const {
         if (outgoing.z() <= 0) return false;
+        const Microfacets facets = roughness.at(point.uv);
         const Vec3 m = facets.sample(outgoing, u);
         const float cos_m = outgoing.dot(m);
         sample.incident = 2 * cos_m * m - outgoing;
@@ -35,6 +36,7 @@ struct RoughConductor {
     }
     bool evaluate(const ShadingPoint& point, const Vec3& outgoing, const Vec3& incident, BsdfValue& value) const {
         if (outgoing.z() <= 0 || incident.z() <= 0) return false;
+        const Microfacets facets = roughness.at(point.uv);
         const Vec3 m = (outgoing + incident).normalized();
         const float density = facets.density(m);
         if (density <= 0) return false;

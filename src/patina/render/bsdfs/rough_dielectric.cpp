@@ -35,7 +35,7 @@ bool RoughDielectric::sample(const ShadingPoint& point, const Vec3& outgoing, fl
     }
 
     // Reflect or refract at a visible facet, by its Fresnel reflectance.
-    const Vec3 m = facets.sample(o, u2);
+    const Vec3 m = roughness.at(point.uv).sample(o, u2);
     const float cos_m = o.dot(m);
     if (cos_m <= 0) return false;
     const FresnelInterface f = fresnel_dielectric(std::min(cos_m, 1.0f), splat(eta));
@@ -71,6 +71,7 @@ bool RoughDielectric::evaluate(const ShadingPoint& point, const Vec3& outgoing, 
 
 bool RoughDielectric::reflect(const ShadingPoint& point, const Vec3& o, const Vec3& i, Float4 eta, const Vec3& axis,
                               BsdfValue& value) const {
+    const Microfacets facets = roughness.at(point.uv);
     const Vec3 m = (o + i).normalized();
     const float visible = facets.density(m) / ((1 + facets.lambda(o)) * 4 * o.z());
     if (!dispersive) eta = splat(eta[0]);
@@ -84,6 +85,7 @@ bool RoughDielectric::reflect(const ShadingPoint& point, const Vec3& o, const Ve
 bool RoughDielectric::transmit(const ShadingPoint& point, const Vec3& o, const Vec3& i, Float4 eta, const Vec3& axis,
                                BsdfValue& value) const {
     Float4 a = splat(0), b = a, c = a, pdf = a;
+    const Microfacets facets = roughness.at(point.uv);
     const float shadowing_o = 1 / (1 + facets.lambda(o)), shadowing_i = 1 / (1 + facets.lambda(-i));
     for (int lane = 0; lane < (dispersive ? wavelengths_per_path : 1); ++lane) {
         // The facet that refracts i to o: it looks to the rarer side.
@@ -127,7 +129,7 @@ RoughDielectric RoughDielectric::build(const Properties& node, const BsdfBuilder
     RoughDielectric d;
     d.interior_index = real_index(node, "int_ior", "bk7", builder);
     d.exterior_index = real_index(node, "ext_ior", "air", builder);
-    d.facets = microfacets_of(node);
+    d.roughness = microfacets_of(node, *builder.resources);
     d.specular_reflectance = Texture::reflectance(node, "specular_reflectance", 1.0f, *builder.resources);
     d.specular_transmittance = Texture::reflectance(node, "specular_transmittance", 1.0f, *builder.resources);
     d.dispersive = !d.interior_index.is_uniform() || !d.exterior_index.is_uniform();

@@ -23,7 +23,7 @@ namespace patina::render {
 
 struct RoughDielectric {
     Spectrum interior_index, exterior_index;
-    Microfacets facets;
+    MicrofacetField roughness;
     Texture specular_reflectance, specular_transmittance;
     bool dispersive = false;
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "patina/core/error.h"
+#include "patina/render/aov.h"
 #include "patina/render/integrators/bidirectional.h"
 #include "patina/render/integrators/path.h"
 #include "patina/render/integrators/radiosity.h"
@@ -86,13 +87,26 @@ std::unique_ptr<Integrator> build_named(const Properties& node) {
 
 }  // namespace
 
+bool is_wrapper(const Properties& integrator) {
+    return integrator.type == "stokes" || integrator.type == "aov";
+}
+
+const Properties& wrapped_integrator(const Properties& integrator) {
+    if (!is_wrapper(integrator)) return integrator;
+    const auto inner = integrator.only_child("integrator");
+    if (!inner)
+        throw input_error(integrator.where, fmt::format("the {} integrator wraps another", integrator.type),
+                          "none is given");
+    return wrapped_integrator(*inner);
+}
+
 std::unique_ptr<Integrator> build_integrator(const Properties& node) {
     expect_plugin(node);
-    if (node.type == "stokes") {
-        const auto inner = node.only_child("integrator");
+    if (is_wrapper(node)) {
+        if (node.type == "aov") aovs_of(node);
+        node.only_child("integrator");
         expect_known_properties(node);
-        if (!inner) throw input_error(node.where, "the stokes integrator wraps another", "none is given");
-        return build_integrator(*inner);
+        return build_integrator(wrapped_integrator(node));
     }
     auto integrator = build_named(node);
     expect_known_properties(node);

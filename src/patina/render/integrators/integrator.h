@@ -57,8 +57,12 @@ class Integrator {
     virtual std::map<std::string, std::string> notes() const { return {}; }
 };
 
-// The integrator a plugin names; `stokes` wraps another and changes nothing, for every picture here has Stokes
-// components.
+// The integrator a plugin names, or wraps: `stokes` changes nothing, for every picture here has Stokes components;
+// `aov` adds channels to the picture (aov.h).
 std::unique_ptr<Integrator> build_integrator(const Properties& node);
+
+// The integrator at work inside any number of wrappers. Throws Error(input) for a wrapper of nothing.
+bool is_wrapper(const Properties& integrator);
+const Properties& wrapped_integrator(const Properties& integrator);
 
 }  // namespace patina::render

@@ -65,6 +65,29 @@ TEST(Noise, IsWhatIndependentPicturesShow) {
     }
 }
 
+// Weights of both signs, in the path tracer divided by their sum and beside splats by their mean.
+TEST(Noise, IsHonestUnderAFilterWithLobes) {
+    const Node tree = glossy_scene();
+    for (auto& child : tree->children)
+        if (child.node->category == "sensor") {
+            auto film = std::make_shared<Properties>(*child.node->only_child("film"));
+            film->children = {{"", node("rfilter", "lanczos")}};
+            auto sensor = std::make_shared<Properties>(*child.node);
+            for (auto& part : sensor->children)
+                if (part.node->category == "film") part.node = film;
+            child.node = sensor;
+        }
+    const auto scene = build_scene(*tree, {});
+    for (const char* integrator : {"path", "bidirectional"}) {
+        const Honesty honesty = honesty_of(*scene, integrator, 32);
+        // The bounds of the test above.
+        for (int k = 0; k < 4; ++k) {
+            EXPECT_GT(honesty.ratio[k], 0.75) << integrator << " S" << k;
+            EXPECT_LT(honesty.ratio[k], k == 0 ? 4.0 : 1.7) << integrator << " S" << k;
+        }
+    }
+}
+
 // A target is reached, and not by far, also by the integrators that begin at the lamps.
 TEST(Noise, TargetStopsEveryIntegrator) {
     const auto scene = build_scene(*glossy_scene(), {});

@@ -98,6 +98,10 @@ RadiosityIntegrator::Row RadiosityIntegrator::cast_rays(const TransportProblem& 
 void RadiosityIntegrator::prepare(const TransportProblem& problem, const JobControl& control) {
     if (!problem.scene.geometry.instances.empty())
         throw input_error({}, "radiosity does not know instances", "a patch belongs to one shape", "use path");
+    for (const Emitter& emitter : problem.scene.lights.all())
+        if (const auto* area = std::get_if<AreaEmitter>(&emitter); area && area->radiance.varies())
+            throw input_error({}, "radiosity does not know textured lamps", "a patch shines alike all over",
+                              "use path");
     patches_.emplace(problem.scene, settings_.patches, most_patches);
     const int n = patches_->count();
     std::vector<Row> rows(n);

@@ -1,0 +1,48 @@
+#pragma once
+// `principled`, the artists' model of Burley (2012), Physically based shading at Disney, and (2015), Extending the
+// Disney BRDF, with Mitsuba's parameters, without its glass (`spec_trans`).
+//
+//   diffuse    (1 - metallic) base/pi ((1 - flatness) (Fd + Fr) + flatness Fs),   w(c) = (1 - c)^5
+//                Fd = (1 - w_o/2)(1 - w_i/2),   R = 2 roughness (i.m)^2,   Fr = R (w_o + w_i + w_o w_i (R - 1))
+//                Fs = 5/4 (Fs90 (1/(cos_o + cos_i) - 1/2) + 1/2),   Fs90 = prod over o, i of 1 + w (R/2 - 1)
+//   sheen      (1 - metallic) sheen w(i.m) times 1, or the hue of base by sheen_tint
+//   specular   F D G1(o) G1(i) / (4 cos_o cos_i), GGX of alpha = roughness^2 (over and times sqrt(1 - 0.9
+//   anisotropic));
+//              F = (1 - metallic)((1 - spec_tint) Fresnel + spec_tint Schlick(hue of base)) + metallic Schlick(base)
+//   clearcoat  clearcoat/4 Schlick(0.04) D_1 G1 G1: D_1 with the long tails of GTR of exponent 1, alpha from 0.1 to
+//              0.001 by clearcoat_gloss, G1 of GGX 0.25; as in Mitsuba without 1/(cos_o cos_i)
+//
+// The dielectric's reflection polarizes with its Fresnel matrix; the rest, whose optics nobody knows, depolarizes.
+// Reciprocal. Not energy conserving: retro-reflection and sheen give energy at grazing angles to bright, rough
+// surfaces; facets lose some as in rough_conductor.h. Black from behind.
+
+#include "patina/render/bsdf.h"
+#include "patina/render/microfacet.h"
+#include "patina/render/texture.h"
+
+namespace patina::render {
+
+struct Principled {
+    Texture base_color;
+    ScalarTexture roughness, anisotropic, metallic, spec_tint, sheen, sheen_tint, flatness, clearcoat, clearcoat_gloss;
+    float eta = 1.5f;
+
+    bool is_delta(const ShadingPoint&) const { return false; }
+    bool sample(const ShadingPoint& point, const Vec3& outgoing, float u, const Vec2& u2, BsdfSample& sample) const;
+    bool evaluate(const ShadingPoint& point, const Vec3& outgoing, const Vec3& incident, BsdfValue& value) const;
+
+    static PluginDescriptor describe();
+    static Principled build(const Properties& node, const BsdfBuilder& builder);
+
+  private:
+    // Probabilities of drawing from the specular lobe and from the clearcoat; the rest is the cosine's.
+    struct Shares {
+        float specular, clearcoat;
+    };
+    Shares shares(const Vec2& uv) const;
+    Microfacets facets(const Vec2& uv) const;
+    Float4 body(const ShadingPoint& point, Float4 base, float cos_o, float cos_i, float cos_m) const;
+    Float4 hue(const ShadingPoint& point, Float4 base) const;
+};
+
+}  // namespace patina::render
