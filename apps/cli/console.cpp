@@ -1,14 +1,10 @@
 #include "console.h"
 
-#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
-#include <system_error>
 
 #include <fmt/format.h>
 #include <unistd.h>
-
-#include "patina/core/error.h"
 
 namespace patina::cli {
 
@@ -30,30 +26,14 @@ bool stderr_is_terminal() {
     return ::isatty(STDERR_FILENO) == 1;
 }
 
-[[noreturn]] void refuse_output(int reason) {
-    if (reason == EPIPE) throw OutputClosed{};
-    throw Error(ErrorKind::runtime,
-                fmt::format("the result cannot be written to stdout ({})", std::generic_category().message(reason)));
-}
-
-void write_out(const std::string& text) {
-    errno = 0;
-    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) refuse_output(errno);
-}
-
 }  // namespace
 
 void Console::result(std::string_view line) const {
-    if (!json) write_out(fmt::format("{}\n", line));
+    if (!json) fmt::print("{}\n", line);
 }
 
 void Console::document(const nlohmann::json& document) const {
-    if (json) write_out(document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-}
-
-void Console::finish() const {
-    errno = 0;
-    if (std::fflush(stdout) != 0) refuse_output(errno);
+    if (json) fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 void Console::note(std::string_view line) const {

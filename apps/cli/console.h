@@ -12,9 +12,6 @@
 
 namespace patina::cli {
 
-// Who read the results has gone: the end, but nobody's mistake.
-struct OutputClosed {};
-
 enum class ProgressStyle { automatic, bar, plain, json, none };
 
 class Console {
@@ -28,9 +25,6 @@ class Console {
     // A line of the result for people (silent with --json), and the one JSON document (silent without).
     void result(std::string_view line) const;
     void document(const nlohmann::json& document) const;
-    // Sends what waits on the way to stdout. All three throw Error(runtime) where the machine does not take it, as a
-    // full disk, and OutputClosed.
-    void finish() const;
 
     // A remark for people on stderr; `hint` is the next useful command, printed after success. Silent when quiet.
     void note(std::string_view line) const;

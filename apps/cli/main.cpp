@@ -107,7 +107,6 @@ int run(int argc, char** argv) {
         program.parse(argc, argv);
         const int code = session.chosen();
         session.console.end_progress();
-        session.console.finish();
         return code;
     } catch (const CLI::Success& help) {
         return program.exit(help);
@@ -119,9 +118,6 @@ int run(int argc, char** argv) {
         session.console.end_progress();
         session.console.error(error.what());
         return static_cast<int>(error.kind());
-    } catch (const cli::OutputClosed&) {
-        session.console.end_progress();
-        return static_cast<int>(ErrorKind::runtime);
     } catch (const std::bad_alloc&) {
         session.console.end_progress();
         session.console.error("out of memory");

@@ -104,10 +104,13 @@ TEST_F(RandomRecipes, ThreeMethodsAgreeWithinTheirErrors) {
         const rt::Field walked =
             monte_carlo.field(what, request, {.samples = samples, .seed = static_cast<std::uint64_t>(seed)});
         const std::vector<Stokes> value = flat(walked.upward), error = flat(walked.upward_error);
+        // Cells of so few streams smooth the lobes of a rough top (tests/cross/rough_interface_monte_carlo_test.cpp).
+        const double cell_error = what.has_rough_top() ? 0.015 : 0.0;
         for (std::size_t k = 0; k < value.size(); ++k)
             for (int c = 0; c < 4; ++c) {
                 // Linear interpolation of the walk's scattering functions: 1e-4 (its header).
-                const double systematic = std::abs(fine[k][c] - coarse[k][c]) + 1e-4 * fine[k][0] + 1e-14;
+                const double systematic =
+                    std::abs(fine[k][c] - coarse[k][c]) + (1e-4 + cell_error) * fine[k][0] + 1e-14;
                 const double z = (value[k][c] - fine[k][c]) / std::hypot(error[k][c], systematic);
                 // One value of fresh seeds exceeds 5 with a probability of 2e-6 (Student's t of 128 batches), any of
                 // 40 recipes' 16 values with 1e-3.

@@ -194,7 +194,7 @@ TEST_F(CommandLine, AResultThatAFullDiskDoesNotTakeIsARuntimeError) {
     for (const char* angles : {"--theta-o-deg 0 --phi-deg 0", "--phi-deg 0:350:1"}) {
         const Outcome outcome = field_into(angles, "> /dev/full");
         EXPECT_EQ(outcome.exit_code, 1) << angles;
-        EXPECT_EQ(outcome.err, "error: the result cannot be written to stdout (No space left on device)\n");
+        EXPECT_EQ(outcome.err, "error: the standard output cannot be written (No space left on device)\n");
     }
 }
 

@@ -191,16 +191,17 @@ RoughInterface::RoughInterface(const RoughSurface& surface, const std::vector<Ra
                                const Medium& lower, int streams, int most_orders, const CancelToken* cancel)
     : upper_(upper), lower_(lower) {
     const Microfacets facets(surface, upper.index, lower.index);
-    // Lobes are about alpha wide in azimuth at middling angles. Those of Beckmann's facets fall off like exp(-(m
-    // alpha)^2), those of GGX like exp(-m alpha).
+    // A facet tilted by d turns reflected light by 2 d, but refracted light in the denser medium only by (1 - 1/n) d:
+    // those lobes are the narrowest in azimuth. Beckmann's fall off like a Gaussian, GGX's like an exponential.
+    const double ratio = std::max(upper.index, lower.index) / std::min(upper.index, lower.index);
+    const double narrowest = surface.alpha * std::max(0.2, 1.0 - 1.0 / ratio);
     const double reach = surface.distribution == FacetDistribution::ggx ? 16.0 : 8.0;
-    order_ = std::max(8, std::min(static_cast<int>(std::ceil(reach / surface.alpha)), 4 * streams));
+    order_ = std::max(8, std::min(static_cast<int>(std::ceil(reach / narrowest)), 4 * streams));
     if (most_orders == 1) order_ = 0;
     const Azimuths azimuths(order_);
 
     // A facet tilted by d turns refracted light in the thinner medium by about (n - 1) d: points for a cell to see
     // lobes that are narrower than itself.
-    const double ratio = std::max(upper.index, lower.index) / std::min(upper.index, lower.index);
     const double width = 0.5 * surface.alpha * (ratio - 1.0), spacing = 0.5 * pi / streams;
     const int points = std::clamp(static_cast<int>(std::ceil(1.2 * spacing / width)), 2, 12);
     const std::vector<Cell> fine = cells_of(rays, points), coarse = cells_of(rays, 2);
