@@ -70,6 +70,12 @@ double difference(const SphereSums& coarse, const SphereSums& fine, const math::
     return error;
 }
 
+// Does the user say where the sizes end?
+bool has_cut_offs(const SizeDistribution& distribution) {
+    return std::holds_alternative<Monodisperse>(distribution.shape) ||
+           std::holds_alternative<PowerLaw>(distribution.shape) || std::holds_alternative<Histogram>(distribution.shape);
+}
+
 struct SizeAverage {
     SphereSums sums;
     int radii;
@@ -119,12 +125,17 @@ ScatteringProperties scatter(Complex particle_index, Complex host_index, double 
     const double wavenumber = complex_wavenumber.real();
 
     // Find the sizes that matter, and the angles that the largest of them needs.
-    const RadiusRange range = relevant_range(distribution, wavenumber, options.tolerance);
+    RadiusRange range = relevant_range(distribution, wavenumber, options.tolerance);
     if (wavenumber * range.max_um > max_size_parameter)
         throw input_error(where, fmt::format("the size distribution reaches to radii of {:.3g} um", range.max_um),
                           fmt::format("Lorenz-Mie sums end at a circumference of {} wavelengths", max_size_parameter),
                           fmt::format("use radii below {:.3g} um, a narrower distribution or a looser tolerance",
                                       max_size_parameter / wavenumber));
+    // A number that hardly falls towards small particles (Rosin-Rammler by volume, of a spread a little above 3) is cut
+    // where no particle is left that is made of atoms.
+    constexpr double smallest_size_parameter = 1e-19;
+    if (!has_cut_offs(distribution) && wavenumber * range.max_um > smallest_size_parameter)
+        range.min_um = std::max(range.min_um, smallest_size_parameter / wavenumber);
     if (wavenumber * range.min_um < 1e-20)
         throw input_error(where, fmt::format("the size distribution reaches to radii of {:.3g} um", range.min_um),
                           "their circumference is below 1e-20 wavelengths",

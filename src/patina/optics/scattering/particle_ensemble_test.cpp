@@ -196,5 +196,18 @@ TEST(Mixture, BirefringentParticles) {
     EXPECT_NEAR(p.effective_radius_um, 1e-3, 1e-15);
 }
 
+// Counted by volume, a spread a little above 3 has a number of particles that hardly falls towards small ones; 3.2 lies
+// between 3.0, where it rises, and 3.6.
+TEST(ParticleEnsemble, GroundPowdersOfEverySpreadScatter) {
+    const auto scattering_per_volume = [](double spread) {
+        const ScatteringProperties p =
+            scatter(2.7, 1.5, 550.0, {RosinRammler{0.1, spread}, SizeWeighting::volume}, {.tolerance = 1e-4});
+        return p.scattering_um2 / p.mean_volume_um3;
+    };
+    const double between = scattering_per_volume(3.2);
+    EXPECT_GT(between, std::min(scattering_per_volume(3.0), scattering_per_volume(3.6)));
+    EXPECT_LT(between, std::max(scattering_per_volume(3.0), scattering_per_volume(3.6)));
+}
+
 }  // namespace
 }  // namespace patina::optics

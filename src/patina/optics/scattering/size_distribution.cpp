@@ -258,10 +258,8 @@ RadiusRange relevant_range(const SizeDistribution& distribution, double wavenumb
 
     // Cut the small particles where they matter neither in number nor in absorption (r^3).
     const auto absorption = [&](double u) { return number(u) + 3.0 * u - std::log1p(wavenumber_per_um * std::exp(u)); };
-    // A number that hardly falls is cut at e^-25 of the typical radius, where no particle is left that is made of atoms.
-    const double u_min = slope_at_zero(shape) > power + 0.05
-                             ? std::max(falls_by(number, drop, start, -1.0), start - 25.0)
-                             : falls_by(absorption, drop, start, -1.0);
+    const double u_min = slope_at_zero(shape) > power + 0.05 ? falls_by(number, drop, start, -1.0)
+                                                             : falls_by(absorption, drop, start, -1.0);
 
     // Cut the large ones where their scattering no longer matters.
     const auto scattering = [&](double u) {

@@ -80,14 +80,6 @@ TEST(SizeDistribution, RosinRammlerByVolume) {
     }
 }
 
-// Counted by volume, a spread a little above 3 has a number of particles that hardly falls towards small ones.
-TEST(SizeDistribution, ANumberThatHardlyFallsEndsWhereParticlesDo) {
-    const SizeDistribution ground{RosinRammler{0.1, 3.2}, Weighting::volume};
-    EXPECT_GT(relevant_range(ground, 17.0, 1e-4).min_um, 1e-13);
-    // 1/r_eff = <1/r> by volume = Gamma(1 - 1/spread)/scale; what is cut off has no surface.
-    EXPECT_NEAR(effective_radius_um(ground), 0.1 / std::tgamma(1.0 - 1.0 / 3.2), 1e-6);
-}
-
 TEST(SizeDistribution, HistogramMoments) {
     const SizeDistribution d{Histogram{{0.1, 0.2, 0.3, 0.6}, {2.0, 0.0, 1.0}}};
     const auto mean = [](double p, double a, double b) {
