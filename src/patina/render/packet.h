@@ -27,6 +27,16 @@ using Float8 = float __attribute__((vector_size(32)));
 struct StokesPacket {
     Float8 iq, uv;
 
+    StokesPacket() = default;
+    StokesPacket(Float8 i_and_q, Float8 u_and_v) : iq(i_and_q), uv(u_and_v) {}
+    // GCC 12 copies structures sixteen bytes at a time by itself, and loads of thirty-two behind that stall.
+    StokesPacket(const StokesPacket& other) : iq(other.iq), uv(other.uv) {}
+    StokesPacket& operator=(const StokesPacket& other) {
+        iq = other.iq;
+        uv = other.uv;
+        return *this;
+    }
+
     float operator[](int lane) const { return lane < 8 ? iq[lane] : uv[lane - 8]; }
 };
 inline StokesPacket operator+(const StokesPacket& a, const StokesPacket& b) {
@@ -166,8 +176,11 @@ inline float sum(Float4 x) {
 inline float mean(Float4 x) {
     return 0.25f * sum(x);
 }
+// The largest of those that are numbers; -infinity if none is.
 inline float largest(Float4 x) {
-    return std::fmax(std::fmax(x[0], x[1]), std::fmax(x[2], x[3]));
+    const Float4 numbers = x == x ? x : splat(-INFINITY);
+    const Float4 pairs = max(numbers, __builtin_shufflevector(numbers, numbers, 2, 3, 0, 1));
+    return pairs[0] > pairs[1] ? pairs[0] : pairs[1];
 }
 
 }  // namespace patina::render

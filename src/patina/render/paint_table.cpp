@@ -249,7 +249,7 @@ PaintTable::Place PaintTable::place(const Vec3& outgoing, const Vec3& incident) 
 }
 
 template <int count>
-void PaintTable::interpolate(const Place& at, const WavelengthPlace& wavelength, StokesPacket* columns) const {
+void PaintTable::interpolate(const Place& at, const WavelengthPlace& wavelength, StokesPacket* matrix) const {
     const Interval o(at.theta_o, size_.angles), i(at.theta_i, size_.angles), p(at.phi, size_.azimuths);
     const int next = nodes_ > 1 ? 64 : 0;
     StokesPacket sums[count]{}, reversed[count]{};
@@ -277,28 +277,28 @@ void PaintTable::interpolate(const Place& at, const WavelengthPlace& wavelength,
     } else if (o.lower + 1 > i.lower) {
         add_reversed(reversed, sums);
     }
-    for (int column = 0; column < count; ++column) columns[column] = sums[column];
+    for (int column = 0; column < count; ++column) matrix[column] = sums[column];
 }
 
 void PaintTable::evaluate(const Wavelengths& w, const Vec3& outgoing, const Vec3& incident, bool first_column_only,
                           ScatteringMatrix& f) const {
     const Place at = place(outgoing, incident);
     const int count = first_column_only ? 1 : 4;
-    StokesPacket columns[4];
+    StokesPacket matrix[4];
     f.form = ScatteringMatrix::Form::general;
     if (equally_spaced(w)) {
         const WavelengthPlace hero = wavelength_place(w.nm[0]);
-        first_column_only ? interpolate<1>(at, hero, columns) : interpolate<4>(at, hero, columns);
+        first_column_only ? interpolate<1>(at, hero, matrix) : interpolate<4>(at, hero, matrix);
         for (int column = 0; column < count; ++column)
             for (int row = 0; row < 4; ++row)
-                f.m[4 * column + row] = turned(stokes_row(columns[column], row), hero.quarter);
+                f.m[4 * column + row] = turned(stokes_row(matrix[column], row), hero.quarter);
     } else {
         for (int k = 0; k < wavelengths_per_path; ++k) {
             const WavelengthPlace single = wavelength_place(w.nm[k]);
-            interpolate<4>(at, single, columns);
+            interpolate<4>(at, single, matrix);
             for (int column = 0; column < count; ++column)
                 for (int row = 0; row < 4; ++row)
-                    f.m[4 * column + row][k] = stokes_row(columns[column], row)[single.quarter];
+                    f.m[4 * column + row][k] = stokes_row(matrix[column], row)[single.quarter];
         }
     }
     // Mirroring the azimuth changes the sign of what couples (I, Q) with (U, V).

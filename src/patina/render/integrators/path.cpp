@@ -1,5 +1,7 @@
 #include "patina/render/integrators/path.h"
 
+#include <optional>
+
 #include "patina/core/contract.h"
 #include "patina/render/arriving_light.h"
 #include "patina/render/mueller_packet.h"
@@ -31,7 +33,7 @@ class PathState {
     void meet(const Hit& hit) {
         hit_ = hit;
         scene_.geometry.find_surface(ray_, hit, point_);
-        if (abbreviated_ && !depolarizes(bsdf())) complete_last_event();
+        if (last_event_ && !depolarizes(bsdf())) complete_last_event();
     }
     void note_camera_hit(bool hit) { sample_.record->hit = hit; }
 
@@ -90,9 +92,9 @@ class PathState {
         events_ = sample.delta && !one_class_ ? classes_.after(events_, ScatteringEvent::specular)
                                               : after_continuous_event(shading, outgoing);
         axes_to_world(point_.frame, sample.weight);
-        abbreviated_ = abbreviate && !sample.delta;
-        if (abbreviated_) {
-            last_event_ = {throughput_, &bsdf(), point_, outgoing, sample.incident, 1 / sample.pdf};
+        last_event_.reset();
+        if (abbreviate && !sample.delta) {
+            last_event_ = AbbreviatedEvent{throughput_, &bsdf(), point_, outgoing, sample.incident, 1 / sample.pdf};
             throughput_.append_for_unpolarized(sample.weight, -ray_.direction);
         } else {
             append(sample.weight, -ray_.direction);
@@ -117,7 +119,7 @@ class PathState {
         const float survival = std::min(carried, 0.95f);
         if (!(u < survival)) return false;
         throughput_.scale(1 / survival);
-        last_event_.factor /= survival;
+        if (last_event_) last_event_->factor /= survival;
         return true;
     }
 
@@ -125,11 +127,11 @@ class PathState {
     // An event of which the throughput has the first column only, as long as nothing but unpolarized light arrives
     // there: enough to complete it.
     struct AbbreviatedEvent {
-        Throughput before{Vec3::UnitX()};
-        const Bsdf* bsdf = nullptr;
+        Throughput before;
+        const Bsdf* bsdf;
         SurfacePoint point;
         Vec3 outgoing, incident;  // local
-        float factor = 1;         // that makes a weight of the model's value
+        float factor;             // that makes a weight of the model's value
     };
     // Reflection off glass carries little light but much of the polarization, so the rarer of two ways is taken with at
     // least this probability; only at the first two such events, for the weights of the other way multiply.
@@ -169,8 +171,7 @@ class PathState {
         return std::holds_alternative<Diffuse>(bsdf.model) || std::holds_alternative<OrenNayar>(bsdf.model);
     }
     void complete_last_event() {
-        abbreviated_ = false;
-        const AbbreviatedEvent& event = last_event_;
+        const AbbreviatedEvent& event = *last_event_;
         const ShadingPoint shading{&w(), event.point.uv, scene_.bsdfs.data()};
         BsdfValue value;
         bsdf_evaluate(*event.bsdf, shading, event.outgoing, event.incident, value);
@@ -178,6 +179,7 @@ class PathState {
         axes_to_world(event.point.frame, value.f);
         throughput_ = event.before;
         append(value.f, event.point.frame.to_world(event.outgoing));
+        last_event_.reset();
     }
     const Wavelengths& w() const { return sample_.wavelengths; }
     const Bsdf& bsdf() const { return scene_.bsdfs[scene_.geometry.shapes[hit_.shape].bsdf]; }
@@ -224,10 +226,9 @@ class PathState {
     float last_pdf_ = 0, eta_ = 1;
     int evened_choices_ = 0;
     bool last_delta_ = true, hero_only_ = false;
-    bool abbreviated_ = false;  // the throughput has no more than the first column of last_event_
-    AbbreviatedEvent last_event_;
     StokesPacket direct_;  // light of a lamp, if nothing is in its way
     int direct_events_ = 0;
+    std::optional<AbbreviatedEvent> last_event_;  // if the throughput has no more than its first column
 #ifndef NDEBUG
     bool events_realizable_ = true;
 #endif
@@ -241,6 +242,8 @@ class PathBlock {
               std::span<CameraSample> samples)
         : geometry_(problem.scene.geometry), settings_(settings) {
         paths_.reserve(samples.size());
+        alive_.reserve(samples.size());
+        lit_.reserve(samples.size());
         const bool one_class = problem.classes.class_count() == 1;
         for (CameraSample& sample : samples) alive_.push_back(&paths_.emplace_back(problem, one_class, sample));
     }
