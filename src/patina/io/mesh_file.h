@@ -20,12 +20,12 @@ struct MeshFile {
     std::vector<std::string> warnings;
 };
 
-// v, vn, vt and f with all four index forms, negative indices included; groups, materials, lines and points are
-// skipped.
+// v, vn, vt and f with all four index forms, negative indices included; three numbers behind a position are the
+// attribute "vertex_color", in sRGB's encoding. Groups, materials, lines and points are skipped.
 MeshFile read_obj(const std::filesystem::path& path);
 
-// ascii, binary_little_endian and binary_big_endian; vertex x y z, nx ny nz and u v (or s t); other elements and
-// properties are skipped.
+// ascii, binary_little_endian and binary_big_endian; vertex x y z, nx ny nz and u v (or s t); other properties of
+// vertices and faces become attributes (mesh_attributes.h), other elements are skipped.
 MeshFile read_ply(const std::filesystem::path& path);
 
 // `kind` is "obj" or "ply".

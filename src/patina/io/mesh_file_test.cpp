@@ -197,5 +197,55 @@ TEST(ObjFile, SurvivesMutation) {
     }
 }
 
+// sRGB 188 is linear 0.503 (IEC 61966-2-1); other whole numbers stand for 0 .. 1.
+TEST(PlyFile, OtherPropertiesAreAttributesByMitsubasNames) {
+    const MeshFile file =
+        ply("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+            "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\nproperty float heat\n"
+            "property float flow_x\nproperty float flow_y\nproperty float flow_z\nproperty float alone_0\n"
+            "element face 1\nproperty list uchar int vertex_indices\nproperty float ink_r\nproperty float ink_g\n"
+            "property float ink_b\nproperty ushort age\nend_header\n"
+            "0 0 0 188 0 255 9 0.5 1 2 3 7\n1 0 0 0 0 0 9 0.6 4 5 6 8\n1 1 0 0 0 0 9 0.7 0 0 0 9\n0 1 0 0 0 0 9 0.8 0 "
+            "0 0 10\n"
+            "4 0 1 2 3 0.1 0.2 0.3 65535\n");
+    const auto& all = file.mesh.attributes;
+    ASSERT_EQ(all.size(), 6u);
+    EXPECT_EQ(all[0].name, "vertex_color");
+    ASSERT_EQ(all[0].values.size(), 12u);
+    EXPECT_NEAR(all[0].values[0], 0.5029, 1e-4);
+    EXPECT_EQ(all[0].values[2], 1);
+    EXPECT_EQ(all[1].name, "vertex_heat");
+    EXPECT_EQ(all[1].values, (std::vector<float>{0.5f, 0.6f, 0.7f, 0.8f}));
+    EXPECT_EQ(all[2].name, "vertex_flow");
+    EXPECT_EQ(all[2].channels, 3);
+    EXPECT_EQ(all[2].values[5], 6);
+    EXPECT_EQ(all[3].name, "vertex_alone");
+    // Two triangles of one quad share its values.
+    EXPECT_EQ(all[4].name, "face_ink_color");
+    EXPECT_EQ(all[4].values, (std::vector<float>{0.1f, 0.2f, 0.3f, 0.1f, 0.2f, 0.3f}));
+    EXPECT_EQ(all[5].name, "face_age");
+    EXPECT_EQ(all[5].values, (std::vector<float>{1, 1}));
+}
+
+TEST(PlyFile, ATriangleWithoutAreaTakesItsAttributesAway) {
+    const MeshFile file =
+        ply("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+            "element face 3\nproperty float a\nproperty list uchar int vertex_indices\nend_header\n"
+            "0 0 0\n1 0 0\n0 1 0\n1 3 0 1 2\n2 3 0 1 1\n3 3 2 1 0\n");
+    EXPECT_EQ(file.mesh.attributes.at(0).values, (std::vector<float>{1, 3}));
+}
+
+TEST(ObjFile, NumbersBehindAPositionAreItsColour) {
+    const MeshFile file = obj("v 0 0 0\nv 1 0 0 1 0 0.735358\nv 0 1 0 0 1 0\nf 3 2 1\n");
+    ASSERT_EQ(file.mesh.attributes.size(), 1u);
+    EXPECT_EQ(file.mesh.attributes[0].name, "vertex_color");
+    const std::vector<float>& c = file.mesh.attributes[0].values;
+    ASSERT_EQ(c.size(), 9u);  // in the order of first use; white where none is given
+    EXPECT_EQ(c[1], 1);
+    EXPECT_EQ(c[3], 1);
+    EXPECT_NEAR(c[5], 0.5, 1e-5);  // 0.735358 of sRGB
+    EXPECT_EQ(c[8], 1);
+}
+
 }  // namespace
 }  // namespace patina::io

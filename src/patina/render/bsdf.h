@@ -19,6 +19,7 @@
 #include "patina/render/mueller_packet.h"
 #include "patina/render/render.h"
 #include "patina/render/spectrum.h"
+#include "patina/render/surface_uv.h"
 
 namespace patina::render {
 
@@ -27,7 +28,7 @@ struct Bsdf;
 // Where on a surface, and for which wavelengths, a model is asked.
 struct ShadingPoint {
     const Wavelengths* wavelengths = nullptr;
-    Vec2 uv = Vec2::Zero();
+    SurfaceUv uv;
     const Bsdf* set = nullptr;  // the scene's models, for those that are made of others
     // evaluate(), and sample() of a paint, need not fill but the first column of a general matrix.
     bool unpolarized_light = false;

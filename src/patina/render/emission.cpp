@@ -14,7 +14,7 @@ struct Start {
 
     bool operator()(const AreaEmitter& e) const {
         const Shape& shape = geometry.shapes[e.shape];
-        Vec2 uv;
+        SurfaceUv uv;
         point_of_shape(geometry, shape, u_origin, out.position, out.normal, uv);
         const Vec3 local = cosine_hemisphere(u_ray);
         out.direction = Frame(out.normal).to_world(local);

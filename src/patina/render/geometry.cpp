@@ -156,15 +156,16 @@ void Geometry::surface_of_triangle(const Hit& hit, SurfacePoint& point) const {
         // The file's normals say which side is outside, whatever the order of the corners.
         if (shading.dot(point.geometric_normal) < 0) point.geometric_normal = -point.geometric_normal;
     }
-    point.uv = {u, v};
+    Vec2 uv(u, v);
     Vec3 tangent = Vec3::Zero();
     if (!mesh.uvs.empty()) {
         const Vec2 &a = mesh.uvs[i0], &b = mesh.uvs[i1], &c = mesh.uvs[i2];
-        point.uv = w * a + u * b + v * c;
+        uv = w * a + u * b + v * c;
         const Vec2 d1 = b - a, d2 = c - a;
         const float det = d1.x() * d2.y() - d1.y() * d2.x();
         if (det != 0) tangent = (e1 * d2.y() - e2 * d1.y()) / det;
     }
+    point.uv = {uv, hit.primitive, u, v};
     if (m.flipped) {
         shading = -shading;
         point.geometric_normal = -point.geometric_normal;
@@ -212,7 +213,7 @@ bool Geometry::sample_shape(int index, const Vec3& from, const Vec2& u, ShapeSam
         const Vec3 &p0 = m.mesh->positions[i0], &p1 = m.mesh->positions[i1], &p2 = m.mesh->positions[i2];
         const float root = std::sqrt(choice.remainder), b1 = root * (1 - u.y()), b2 = root * u.y();
         sample.position = (1 - b1 - b2) * p0 + b1 * p1 + b2 * p2;
-        sample.uv = m.mesh->uv_at(choice.index, b1, b2);
+        sample.uv = {m.mesh->uv_at(choice.index, b1, b2), choice.index, b1, b2};
         sample.normal = (p1 - p0).cross(p2 - p0).normalized();
         if (!m.mesh->normals.empty() && sample.normal.dot(m.mesh->normals[i0]) < 0) sample.normal = -sample.normal;
         if (m.flipped) sample.normal = -sample.normal;

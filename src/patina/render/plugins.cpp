@@ -6,6 +6,7 @@
 #include "patina/render/aov.h"
 #include "patina/render/bsdf_set.h"
 #include "patina/render/medium.h"
+#include "patina/render/mesh_attribute.h"
 #include "patina/render/texel_grid.h"
 
 namespace patina::render {
@@ -203,9 +204,10 @@ void add_integrators(std::vector<PluginDescriptor>& all) {
     all.push_back({"texture",
                    "checkerboard",
                    "Two spectra or numbers in squares.",
-                   {{"color0", "spectrum", "", "0.4", "", "of the first square"},
-                    {"color1", "spectrum", "", "0.2", "", "of its neighbours"},
+                   {{"color0", "spectrum or texture", "", "0.4", "", "of the first square"},
+                    {"color1", "spectrum or texture", "", "0.2", "", "of its neighbours"},
                     {"to_uv", "transform", "", "identity", "", "of texture coordinates"}}});
+    all.push_back(attribute_descriptor());
 }
 
 std::vector<PluginDescriptor> build_registry() {
@@ -250,7 +252,6 @@ constexpr WayOut ways_out[] = {
     {"shape", "heightfield", "convert it to a mesh"},
     {"shape", "sdfgrid", "convert it to a mesh"},
     {"medium", "heterogeneous", "use \"homogeneous\""},
-    {"texture", "mesh_attribute", "bake the colours into a bitmap texture"},
     {"texture", "volume", "bake the colours into a bitmap texture"},
     {"integrator", "moment", "every picture has variance channels; name the inner integrator alone"},
     {"integrator", "depth", "use \"aov\" with aovs=\"d:depth\""},

@@ -3,7 +3,7 @@
 namespace patina::render {
 
 void point_of_shape(const Geometry& geometry, const Shape& shape, const Vec2& u, Vec3& position, Vec3& normal,
-                    Vec2& uv) {
+                    SurfaceUv& uv) {
     if (shape.is_mesh) {
         const MeshShape& m = geometry.meshes[shape.first];
         const auto choice = m.by_area.sample(u.x());
@@ -11,7 +11,7 @@ void point_of_shape(const Geometry& geometry, const Shape& shape, const Vec2& u,
         const Vec3 &p0 = m.mesh->positions[i0], &p1 = m.mesh->positions[i1], &p2 = m.mesh->positions[i2];
         const float root = std::sqrt(choice.remainder), b1 = root * (1 - u.y()), b2 = root * u.y();
         position = (1 - b1 - b2) * p0 + b1 * p1 + b2 * p2;
-        uv = m.mesh->uv_at(choice.index, b1, b2);
+        uv = {m.mesh->uv_at(choice.index, b1, b2), choice.index, b1, b2};
         normal = (p1 - p0).cross(p2 - p0).normalized();
         if (!m.mesh->normals.empty() && normal.dot(m.mesh->normals[i0]) < 0) normal = -normal;
         if (m.flipped) normal = -normal;
@@ -38,7 +38,7 @@ void point_of_shape(const Geometry& geometry, const Shape& shape, const Vec2& u,
 }
 
 void point_of_shape(const Geometry& geometry, const Shape& shape, const Vec2& u, Vec3& position, Vec3& normal) {
-    Vec2 uv;
+    SurfaceUv uv;
     point_of_shape(geometry, shape, u, position, normal, uv);
 }
 

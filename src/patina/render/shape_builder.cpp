@@ -98,6 +98,9 @@ void check_mesh(const TriangleMesh& mesh, const SourceLocation& where) {
     if ((!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size()) ||
         (!mesh.uvs.empty() && mesh.uvs.size() != mesh.positions.size()))
         throw input_error(where, what + " has another number of normals or texture coordinates than of vertices");
+    for (const MeshAttribute& a : mesh.attributes)
+        if (a.values.size() != (a.of_triangles ? mesh.triangles.size() : mesh.positions.size()) * a.channels)
+            throw input_error(where, fmt::format("{}: attribute \"{}\" has {} values", what, a.name, a.values.size()));
 }
 
 // The side of a `cylinder` from p0 to p1, normals outward, without lids. Facets whose area is that of the cylinder;
@@ -163,12 +166,12 @@ MeshShape mesh_shape(const Properties& node, const SceneResources& resources, fl
 
     // Drop triangles without area: nothing can hit them, and they have no normal.
     std::vector<double> areas;
-    std::erase_if(mesh->triangles, [&](const auto& t) {
+    mesh->keep_triangles([&](const auto& t) {
         const Vec3 cross =
             (mesh->positions[t[1]] - mesh->positions[t[0]]).cross(mesh->positions[t[2]] - mesh->positions[t[0]]);
-        if (!(cross.squaredNorm() > 1e-37f)) return true;
+        if (!(cross.squaredNorm() > 1e-37f)) return false;
         areas.push_back(0.5 * cross.norm());
-        return false;
+        return true;
     });
     if (areas.empty()) throw input_error(where, fmt::format("mesh \"{}\" has no area", mesh->name));
     MeshShape shape;

@@ -38,13 +38,13 @@ constexpr Microfacets clearcoat_masking{MicrofacetKind::ggx, 0.25f, 0.25f};
 
 }  // namespace
 
-Principled::Shares Principled::shares(const Vec2& uv) const {
+Principled::Shares Principled::shares(const SurfaceUv& uv) const {
     const float coat = 0.25f * clearcoat.at(uv), diffuse = 1 - metallic.at(uv);
     const float all = 1 + coat + diffuse;
     return {1 / all, coat / all};
 }
 
-Microfacets Principled::facets(const Vec2& uv) const {
+Microfacets Principled::facets(const SurfaceUv& uv) const {
     const float alpha = sqr(roughness.at(uv)), aspect = std::sqrt(1 - 0.9f * anisotropic.at(uv));
     return {MicrofacetKind::ggx, std::max(0.001f, alpha / aspect), std::max(0.001f, alpha * aspect)};
 }
@@ -98,7 +98,7 @@ bool Principled::evaluate(const ShadingPoint& point, const Vec3& outgoing, const
                           BsdfValue& value) const {
     const float cos_o = outgoing.z(), cos_i = incident.z();
     if (cos_o <= 0 || cos_i <= 0) return false;
-    const Vec2& uv = point.uv;
+    const SurfaceUv& uv = point.uv;
     const Float4 base = base_color.at(*point.wavelengths, uv);
     const Vec3 m = (outgoing + incident).normalized();
     const float cos_m = std::clamp(outgoing.dot(m), 1e-6f, 1.0f);

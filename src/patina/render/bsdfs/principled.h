@@ -39,8 +39,8 @@ struct Principled {
     struct Shares {
         float specular, clearcoat;
     };
-    Shares shares(const Vec2& uv) const;
-    Microfacets facets(const Vec2& uv) const;
+    Shares shares(const SurfaceUv& uv) const;
+    Microfacets facets(const SurfaceUv& uv) const;
     Float4 body(const ShadingPoint& point, Float4 base, float cos_o, float cos_i, float cos_m) const;
     Float4 hue(const ShadingPoint& point, Float4 base) const;
 };
