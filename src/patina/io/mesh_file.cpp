@@ -6,6 +6,8 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "patina/io/located_text.h"
+
 namespace patina::io {
 
 namespace {
@@ -104,8 +106,12 @@ void finish_mesh(MeshFile& file, const SourceLocation& where) {
 MeshFile read_mesh(const std::filesystem::path& path, std::string_view kind) {
     if (kind == "obj") return read_obj(path);
     if (kind == "ply") return read_ply(path);
+    constexpr std::string_view packed = "serialized ";
+    if (kind.starts_with(packed))
+        return read_serialized(path,
+                               static_cast<int>(parse_integer(kind.substr(packed.size()), {path.string()}, "mesh")));
     throw input_error({path.string()}, fmt::format("unknown mesh format \"{}\"", kind), "",
-                      did_you_mean(kind, {"obj", "ply"}));
+                      did_you_mean(kind, {"obj", "ply", "serialized"}));
 }
 
 }  // namespace patina::io

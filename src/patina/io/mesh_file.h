@@ -1,5 +1,5 @@
 #pragma once
-// Mesh files as triangle meshes: Wavefront OBJ and Stanford PLY.
+// Mesh files as triangle meshes: Wavefront OBJ, Stanford PLY and Mitsuba's packed one.
 //
 // Throws Error(input) with file and line (byte offset for binary files) for what is truncated, not a number, out of
 // range or empty. What can be repaired is repaired and said in `warnings`: triangles without area are left out, normals
@@ -28,7 +28,10 @@ MeshFile read_obj(const std::filesystem::path& path);
 // vertices and faces become attributes (mesh_attributes.h), other elements are skipped.
 MeshFile read_ply(const std::filesystem::path& path);
 
-// `kind` is "obj" or "ply".
+// Mesh `index` of a .serialized file, version 3 or 4: packed by zlib, several in a file.
+MeshFile read_serialized(const std::filesystem::path& path, int index);
+
+// `kind` is "obj", "ply", or "serialized" with the number of the mesh behind it: "serialized 2".
 MeshFile read_mesh(const std::filesystem::path& path, std::string_view kind);
 
 // The last step of every reader: checks indices and numbers, leaves out triangles without area, normalizes normals.

@@ -28,18 +28,20 @@ void add_shapes(std::vector<PluginDescriptor>& all) {
           {{"center", "point", "scene units", "0, 0, 0", "", "its centre"},
            {"radius", "number", "scene units", "1", "> 0", "its radius"}});
     shape("rectangle", "The square -1 .. 1 in x and y, normal along +z.", {});
-    shape("disk", "The unit disk in x and y, normal along +z.", {});
-    shape("cube", "The cube -1 .. 1, normals outward.", {});
+    shape("disk", "The unit disk in x and y, normal along +z; u is the radius, v the azimuth.", {});
+    shape("cube", "The cube -1 .. 1, normals outward; u and v are 0 .. 1 on each face.", {});
     shape("cylinder", "The side of a cylinder, normals outward; 512 facets with its own normals.",
           {{"p0", "point", "scene units", "0, 0, 0", "", "middle of one end"},
            {"p1", "point", "scene units", "0, 0, 1", "", "middle of the other"},
            {"radius", "number", "scene units", "1", "> 0", "its radius"}});
-    for (const char* name : {"obj", "ply"})
-        shape(name, "A triangle mesh from a file.",
-              {{"filename", "path", "", "", "", "the file"},
-               {"face_normals", "boolean", "", "false", "", "flat shading, the file's normals unused"},
-               {"flip_tex_coords", "boolean", "", "true for obj", "",
-                "v becomes 1 - v, for files whose v grows upwards"}});
+    const std::vector<ParameterDescriptor> of_file = {
+        {"filename", "path", "", "", "", "the file"},
+        {"face_normals", "boolean", "", "false", "", "flat shading, the file's normals unused"},
+        {"flip_tex_coords", "boolean", "", "true for obj", "", "v becomes 1 - v, for files whose v grows upwards"}};
+    for (const char* name : {"obj", "ply"}) shape(name, "A triangle mesh from a file.", of_file);
+    std::vector<ParameterDescriptor> packed = of_file;
+    packed.push_back({"shape_index", "integer", "", "0", ">= 0", "which of the file's meshes"});
+    shape("serialized", "A triangle mesh from a file of Mitsuba's.", std::move(packed));
 }
 
 const std::vector<ParameterDescriptor> polarization = {

@@ -133,12 +133,22 @@ TriangleMesh cylinder(const Properties& node) {
     return mesh;
 }
 
+// Which of the meshes in a file.
+std::int64_t expect_index(const Properties& node) {
+    const std::int64_t index = node.integer("shape_index", 0);
+    if (index >= 0 && index < 1'000'000) return index;
+    throw input_error(node.location_of("shape_index"), "shape_index out of range", fmt::format("it is {}", index),
+                      "numbers count from 0");
+}
+
 // The mesh a file holds, with normals.
 TriangleMesh mesh_of_file(const Properties& node, const SceneResources& resources) {
     const std::string file = node.string("filename");
     const SourceLocation where = node.location_of("filename");
     if (!resources.load_mesh) throw Error(ErrorKind::not_built, where.to_string() + ": mesh files are not available");
-    TriangleMesh mesh = *resources.load_mesh(file, node.type);
+    std::string kind = node.type;
+    if (kind == "serialized") kind += fmt::format(" {}", expect_index(node));
+    TriangleMesh mesh = *resources.load_mesh(file, kind);
     check_mesh(mesh, where);
     if (node.boolean("flip_tex_coords", node.type == "obj"))
         for (Vec2& uv : mesh.uvs) uv.y() = 1 - uv.y();
@@ -209,7 +219,7 @@ int append_shape(const Properties& node, const SceneResources& resources, Geomet
     const bool flip = node.boolean("flip_normals", false);
     Shape shape;
     shape.group = group;
-    if (node.type == "obj" || node.type == "ply" || node.type == "cylinder") {
+    if (node.type != "sphere" && node.type != "rectangle" && node.type != "disk" && node.type != "cube") {
         MeshShape mesh = mesh_shape(node, resources, shape.area);
         mesh.shape = index;
         mesh.group = group;
