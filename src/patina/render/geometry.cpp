@@ -1,5 +1,7 @@
 #include "patina/render/geometry.h"
 
+#include "patina/render/plane_uv.h"
+
 namespace patina::render {
 
 namespace {
@@ -120,6 +122,12 @@ void Geometry::surface_of_analytic(const AnalyticShape& s, const Ray& ray, const
         point.position = s.o + hit.u * s.a + hit.v * s.b;
         point.frame = s.frame;
         point.geometric_normal = s.frame.n;
+        if (s.kind == AnalyticShape::Kind::disk) {
+            point.uv = uv_of_plane(s, hit.u, hit.v);
+            // The tangent is along u, the radius.
+            point.frame = Frame(s.frame.n, hit.u * s.a + hit.v * s.b);
+            return;
+        }
         point.uv = {0.5f * (hit.u + 1), 0.5f * (hit.v + 1)};
         return;
     }
@@ -231,7 +239,7 @@ bool Geometry::sample_shape(int index, const Vec3& from, const Vec2& u, ShapeSam
         const Vec2 p =
             s.kind == AnalyticShape::Kind::disk ? concentric_disk({rest, u.y()}) : Vec2(2 * rest - 1, 2 * u.y() - 1);
         sample.position = s.o + p.x() * s.a + p.y() * s.b;
-        sample.uv = {0.5f * (p.x() + 1), 0.5f * (p.y() + 1)};
+        sample.uv = uv_of_plane(s, p.x(), p.y());
         sample.normal = s.flipped ? Vec3(-s.n) : s.n;
     }
     const Vec3 d = from - sample.position;

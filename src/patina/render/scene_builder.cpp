@@ -161,8 +161,9 @@ class SceneBuilder {
 
     // Do u, v and the normal of a shape make a left-handed system? Reliefs want to know.
     static bool left_handed(const Properties& shape) {
-        if (shape.type == "obj" || shape.type == "ply") return shape.boolean("flip_tex_coords", shape.type == "obj");
-        return shape.type == "sphere";
+        if (shape.type == "obj" || shape.type == "ply" || shape.type == "serialized")
+            return shape.boolean("flip_tex_coords", shape.type == "obj");
+        return shape.type == "sphere" || shape.type == "cube";
     }
     static bool holds_relief(const Properties& model) {
         return model.type == "bumpmap" ||

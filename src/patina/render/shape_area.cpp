@@ -1,5 +1,7 @@
 #include "patina/render/shape_area.h"
 
+#include "patina/render/plane_uv.h"
+
 namespace patina::render {
 
 void point_of_shape(const Geometry& geometry, const Shape& shape, const Vec2& u, Vec3& position, Vec3& normal,
@@ -31,7 +33,7 @@ void point_of_shape(const Geometry& geometry, const Shape& shape, const Vec2& u,
         const Vec2 p =
             s.kind == AnalyticShape::Kind::disk ? concentric_disk({rest, u.y()}) : Vec2(2 * rest - 1, 2 * u.y() - 1);
         position = s.o + p.x() * s.a + p.y() * s.b;
-        uv = {0.5f * (p.x() + 1), 0.5f * (p.y() + 1)};
+        uv = uv_of_plane(s, p.x(), p.y());
         normal = s.n;
     }
     if (s.flipped) normal = -normal;

@@ -63,8 +63,14 @@ std::vector<AnalyticShape> analytic_shapes(const Properties& node) {
     std::vector<AnalyticShape> faces;
     for (int axis = 0; axis < 3; ++axis)
         for (double side : {-1.0, 1.0}) {
-            const Vector3d u = Vector3d::Unit((axis + 1) % 3), v = side * Vector3d::Unit((axis + 2) % 3);
-            faces.push_back(face(m, Kind::parallelogram, side * Vector3d::Unit(axis), u, v, node.where));
+            // Mitsuba's u and v, which with the outside make a left-handed system.
+            const Vector3d outside = side * Vector3d::Unit(axis);
+            const Vector3d u = axis == 0   ? Vector3d(Vector3d::UnitY())
+                               : axis == 2 ? Vector3d(side * Vector3d::UnitY())
+                               : side < 0  ? Vector3d(Vector3d::UnitZ())
+                                           : Vector3d(-Vector3d::UnitX());
+            faces.push_back(face(m, Kind::parallelogram, outside, u, u.cross(outside), node.where));
+            faces.back().flipped ^= true;
         }
     return faces;
 }
@@ -112,14 +118,15 @@ TriangleMesh cylinder(const Properties& node) {
     if (!(radius > 0) || !((p1 - p0).norm() > 0) || !p0.allFinite() || !p1.allFinite())
         throw input_error(node.location_of(radius > 0 ? "p1" : "radius"), "the cylinder has no area",
                           fmt::format("its radius is {}, its length {}", radius, (p1 - p0).norm()));
-    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), p1 - p0);
+    // The azimuth counts from where Mitsuba's frame about the axis has its x.
+    const Frame about(Vec3((p1 - p0).normalized().cast<float>()));
     constexpr int facets = 512;
     const double reach = radius * (pi / facets) / std::sin(pi / facets);
     TriangleMesh mesh;
     mesh.name = "cylinder";
     for (int i = 0; i <= facets; ++i) {
         const double phi = 2 * pi * i / facets;
-        const Vector3d outward = turn * Vector3d(std::cos(phi), std::sin(phi), 0);
+        const Vector3d outward = std::cos(phi) * about.s.cast<double>() + std::sin(phi) * about.t.cast<double>();
         for (const Vector3d& end : {p0, p1}) {
             mesh.uvs.emplace_back(static_cast<float>(i) / facets, mesh.positions.size() % 2 ? 1.0f : 0.0f);
             mesh.positions.push_back((end + reach * outward).cast<float>());
