@@ -136,6 +136,7 @@ void add_film(std::vector<PluginDescriptor>& all) {
                         {"pixel_format", "string", "", "rgba", "", "accepted, without effect"},
                         {"component_format", "string", "", "float32", "", "accepted, without effect"},
                         {"banner", "boolean", "", "false", "", "accepted, without effect"},
+                        {"compensate", "boolean", "", "false", "", "accepted, without effect"},
                         {"sample_border", "boolean", "", "false", "", "accepted, without effect"}}});
     const char* positive = "Reconstruction filter, sampled.";
     all.push_back({"rfilter", "box", positive, {{"radius", "number", "pixel", "0.5", "0.001 .. 100", "reach"}}});
@@ -160,12 +161,16 @@ void add_film(std::vector<PluginDescriptor>& all) {
 }
 
 void add_integrators(std::vector<PluginDescriptor>& all) {
+    const std::vector<ParameterDescriptor> schedule = {
+        {"samples_per_pass", "integer", "", "", ">= 1", "accepted, without effect"},
+        {"block_size", "integer", "pixel", "", ">= 0", "accepted, without effect"}};
     const auto integrator = [&](const char* name, const char* doc, const char* hide_emitters,
                                 std::vector<ParameterDescriptor> more = {}) {
         std::vector<ParameterDescriptor> parameters = {
             {"max_depth", "integer", "", "-1", ">= -1", "segments of a path, 1 = emitters only, -1 = no limit"},
             {"rr_depth", "integer", "", "5", ">= 1", "segments before Russian roulette begins"},
             {"hide_emitters", "boolean", "", hide_emitters, "", "emitters do not show directly"}};
+        parameters.insert(parameters.end(), schedule.begin(), schedule.end());
         parameters.insert(parameters.end(), more.begin(), more.end());
         all.push_back({"integrator", name, doc, std::move(parameters)});
     };
@@ -185,6 +190,7 @@ void add_integrators(std::vector<PluginDescriptor>& all) {
         {"hide_emitters", "boolean", "", "false", "", "emitters do not show directly"}};
     for (const char* name : {"shading_samples", "emitter_samples", "bsdf_samples"})
         (of_direct.emplace_back(samples)).name = name;
+    of_direct.insert(of_direct.end(), schedule.begin(), schedule.end());
     all.push_back({"integrator", "direct", "Path tracing of emitters and directly lit surfaces (max_depth 2).",
                    std::move(of_direct)});
     integrator("bidirectional", "Bidirectional path tracing with multiple importance sampling, polarized.", "false");
@@ -201,6 +207,7 @@ void add_integrators(std::vector<PluginDescriptor>& all) {
                    "Wraps an integrator; what the camera sees first becomes further channels of the picture.",
                    {{"aovs", "string", "", "", "", "\"name:kind, ...\" of " + kinds_of_aovs()}}});
     all.push_back({"integrator", "stokes", "Wraps an integrator; every picture has Stokes components anyway.", {}});
+    all.push_back({"integrator", "moment", "Wraps an integrator; every picture has variances anyway.", {}});
     all.push_back({"texture", "bitmap", "A picture as a reflectance, a number or a radiance over a surface.",
                    picture_parameters()});
     all.push_back({"texture",
@@ -215,6 +222,10 @@ void add_integrators(std::vector<PluginDescriptor>& all) {
 std::vector<PluginDescriptor> build_registry() {
     std::vector<PluginDescriptor> all = bsdf_descriptors();
     for (PluginDescriptor& medium : medium_descriptors()) all.push_back(std::move(medium));
+    all.push_back({"volume",
+                   "constvolume",
+                   "A coefficient of a medium that is the same everywhere.",
+                   {{"value", "spectrum", "", "1", ">= 0", "of the coefficient"}}});
     add_shapes(all);
     add_copies(all);
     add_emitters(all);
@@ -246,16 +257,15 @@ constexpr WayOut ways_out[] = {
      "\"rayleigh\" and a \"directional\" sun"},
     {"emitter", "sky", "write an \"envmap\" from another program, or use \"constant\" with polarization \"rayleigh\""},
     {"emitter", "sun", "use \"directional\""},
-    {"emitter", "projector", "use \"spot\", or \"area\" with a textured radiance"},
     {"emitter", "directionalarea", "use \"directional\" or \"area\""},
-    {"shape", "serialized", "convert the mesh to PLY or OBJ"},
     {"shape", "bsplinecurve", "convert the curves to a mesh"},
     {"shape", "linearcurve", "convert the curves to a mesh, or use \"cylinder\""},
     {"shape", "heightfield", "convert it to a mesh"},
     {"shape", "sdfgrid", "convert it to a mesh"},
     {"medium", "heterogeneous", "use \"homogeneous\""},
+    {"volume", "gridvolume", "media are the same everywhere: use \"constvolume\""},
+    {"shape", "merge", "leave its shapes as they are, each for itself"},
     {"texture", "volume", "bake the colours into a bitmap texture"},
-    {"integrator", "moment", "every picture has variance channels; name the inner integrator alone"},
     {"integrator", "depth", "use \"aov\" with aovs=\"d:depth\""},
 };
 
