@@ -112,6 +112,30 @@ TEST(MeshAttribute, IsARadiance) {
     EXPECT_NEAR(seen_at(3, 3, {mesh({lamp})}, two, 1), 7, 0.01);
 }
 
+// A square of two triangles of which one shines: at the point before its middle half of what the whole square sends
+// (Siegel & Howell, configuration 3, of its quarters), whatever the share of samples each triangle has.
+TEST(MeshAttribute, OfALampLightsWhatItFaces) {
+    TriangleMesh mesh_of_one = two_triangles();
+    mesh_of_one.attributes[1].values = {0, 10};
+    const SceneResources one = with(std::move(mesh_of_one));
+    const double height = 1.5, x = 2 / height, r = std::sqrt(1 + x * x);
+    const double under_corner = x / r * std::atan(x / r);
+    const Node lamp = mesh({node("bsdf", "diffuse", {uniform("reflectance", 0)}),
+                            holding(node("emitter", "area"), attribute("face_share"), "radiance")});
+    const Node wall =
+        node("shape", "rectangle", {{"to_world", Eigen::Matrix4d(translate({2, 2, height}) * rotate_x(180))}},
+             {node("bsdf", "diffuse", {uniform("reflectance", 1)})});
+    for (const char* integrator : {"path", "bidirectional"}) {
+        RenderOptions options;
+        options.integrator = integrator;
+        const Node tree = scene({path(2), lamp, wall, needle({2, 2, 0.5}, {2, 2, height}, {0, 1, 0}, 256)});
+        // 4096 samples, stratified, of an integrand that varies by its own size: 4 standard errors of 1/64.
+        EXPECT_NEAR(pi * mean_stokes(render_tree(tree, options, one))[0], 5 * 4 * under_corner,
+                    0.06 * 20 * under_corner)
+            << integrator;
+    }
+}
+
 TEST(MeshAttribute, ThatIsNotThereIsNamed) {
     const auto message = [](const std::vector<Node>& shapes) {
         try {

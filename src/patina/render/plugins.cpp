@@ -57,6 +57,11 @@ void add_copies(std::vector<PluginDescriptor>& all) {
     all.push_back({"shape", "instance", "A copy of a shapegroup, which it refers to.", {to_world}});
 }
 
+const std::vector<ParameterDescriptor> field_of_view = {
+    {"fov", "number", "degree", "39.6", "0 .. 180", "field of view along fov_axis"},
+    {"fov_axis", "string", "", "x", "x, y, diagonal, smaller, larger", "what fov measures"},
+    {"focal_length", "string", "mm", "50mm", "> 0", "instead of fov, on 36 x 24 mm film"}};
+
 void add_emitters(std::vector<PluginDescriptor>& all) {
     const auto emitter = [&](const char* name, const char* doc, std::vector<ParameterDescriptor> parameters) {
         parameters.insert(parameters.end(), polarization.begin(), polarization.end());
@@ -74,7 +79,14 @@ void add_emitters(std::vector<PluginDescriptor>& all) {
             {to_world,
              {"intensity", "spectrum", "W/(sr nm)", "1", ">= 0", "radiant intensity inside beam_width"},
              {"cutoff_angle", "number", "degree", "20", "0 .. 180", "beyond it nothing"},
-             {"beam_width", "number", "degree", "3/4 of cutoff_angle", "0 .. cutoff_angle", "until it constant"}});
+             {"beam_width", "number", "degree", "3/4 of cutoff_angle", "0 .. cutoff_angle", "until it constant"},
+             {"texture", "texture", "", "", "", "factors on the intensity, over the square about the cone"}});
+    std::vector<ParameterDescriptor> projector = field_of_view;
+    projector.insert(projector.begin(), {to_world,
+                                         {"irradiance", "texture or spectrum", "W/(m^2 nm)", "1", ">= 0",
+                                          "1/pi of it, on a plane across the axis at distance 1"},
+                                         {"scale", "number", "", "1", ">= 0", "factor on it"}});
+    emitter("projector", "A picture thrown by a perspective camera turned round.", std::move(projector));
     emitter("directional", "Parallel light.",
             {{"direction", "vector", "", "+z through to_world", "", "in which the light travels"},
              to_world,
@@ -99,9 +111,7 @@ void add_sensors(std::vector<PluginDescriptor>& all) {
         {"near_clip", "number", "scene units", "0.01", "", "accepted, without effect"},
         {"far_clip", "number", "scene units", "10000", "", "accepted, without effect"}};
     std::vector<ParameterDescriptor> camera = planes;
-    camera.push_back({"fov", "number", "degree", "39.6", "0 .. 180", "field of view along fov_axis"});
-    camera.push_back({"fov_axis", "string", "", "x", "x, y, diagonal, smaller, larger", "what fov measures"});
-    camera.push_back({"focal_length", "string", "mm", "50mm", "> 0", "instead of fov, on 36 x 24 mm film"});
+    camera.insert(camera.end(), field_of_view.begin(), field_of_view.end());
     std::vector<ParameterDescriptor> pinhole = camera;
     pinhole.push_back({"focus_distance", "number", "scene units", "", "", "accepted, without effect"});
     sensor("perspective", "Pinhole camera.", pinhole);

@@ -153,7 +153,9 @@ class SceneBuilder {
         if (const auto emitter = node.only_child("emitter")) {
             scene_->geometry.shapes[index].emitter = static_cast<int>(emitters_.size());
             states_.push_back(build_polarization(*emitter, node.transform("to_world")));
-            emitters_.push_back(AreaEmitter{index, build_area_radiance(*emitter, resources_)});
+            Texture radiance = build_area_radiance(*emitter, resources_);
+            auto table = LampTable::of(scene_->geometry, index, radiance);
+            emitters_.push_back(AreaEmitter{index, std::move(radiance), std::move(table)});
         }
         for (const auto& sensor : node.children_of("sensor")) sensors_.push_back({sensor, index});
         expect_known_properties(node);

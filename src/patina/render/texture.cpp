@@ -146,6 +146,11 @@ float Texture::average() const {
     return varying_ ? std::visit([](const auto& kind) { return kind.average(); }, varying_->kind) : spectrum_.average();
 }
 
+float Texture::aspect() const {
+    const auto* bitmap = varying_ ? std::get_if<SpectralBitmap>(&varying_->kind) : nullptr;
+    return bitmap ? static_cast<float>(bitmap->grid.width) / static_cast<float>(bitmap->grid.height) : 1.0f;
+}
+
 Texture Texture::reflectance(const Properties& plugin, const std::string& name, float fallback,
                              const SceneResources& resources) {
     return read(plugin, name, fallback, resources, false);

@@ -23,6 +23,8 @@ class Texture {
     bool varies() const { return varying_ != nullptr; }
     bool is_black() const { return !varies() && spectrum_.is_black(); }
     float average() const;
+    // Of a picture, width over height; 1 of anything else.
+    float aspect() const;
 
     // The child <texture name="..."> or the spectrum `name` of a plugin, `fallback` when neither is given: a
     // reflectance, or a radiance.
