@@ -80,10 +80,8 @@ struct Draw {
     bool operator()(const AreaEmitter& e) const {
         ShapeSample at;
         if (!geometry.sample_shape(e.shape, from, u, at)) return false;
-        const Vec3 d = at.position - from;
-        out.distance = d.norm();
-        out.direction = d * (1 / out.distance);
-        if (out.direction.dot(at.normal) >= 0) return false;
+        out.distance = at.distance;
+        out.direction = at.direction;
         out.normal = at.normal;
         out.pdf = at.pdf;
         out.radiance = e.radiance.at(w, at.uv);
