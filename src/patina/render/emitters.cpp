@@ -82,10 +82,8 @@ struct Draw {
         ShapeSample at;
         const Vec2 place = e.table ? e.table->sample(u, out.area_density) : u;
         if (!geometry.sample_shape(e.shape, from, place, at)) return false;
-        const Vec3 d = at.position - from;
-        out.distance = d.norm();
-        out.direction = d * (1 / out.distance);
-        if (out.direction.dot(at.normal) >= 0) return false;
+        out.distance = at.distance;
+        out.direction = at.direction;
         out.normal = at.normal;
         out.pdf = at.pdf * out.area_density;
         out.radiance = e.radiance.at(w, at.uv);

@@ -157,6 +157,8 @@ class Lights {
         }
     }
     bool any_sampled() const { return !sampled_.empty(); }
+    // Does sample() need its first number?
+    bool must_choose() const { return sampled_.size() > 1 || !lamps_.empty(); }
 
     bool any_polarized() const { return any_polarized_; }
     bool polarized(int emitter) const { return any_polarized_ && states_[emitter].polarized(); }

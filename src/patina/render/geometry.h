@@ -53,7 +53,8 @@ struct SurfacePoint {
 
 // A point drawn on a shape as seen from another.
 struct ShapeSample {
-    Vec3 position, normal;
+    Vec3 normal, direction;  // of the shape there; from the other point to it
+    float distance = 0;
     SurfaceUv uv;
     float pdf = 0;  // per solid angle at the other point
 };
