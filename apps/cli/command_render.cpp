@@ -57,6 +57,8 @@ jobs::RenderRequest make_request(const Options& options, const CLI::App& command
     request.command = session.command_line;
     request.checkpoint = std::filesystem::path(options.output).replace_extension(".checkpoint");
     request.checkpoint_interval_s = options.checkpoint_every;
+    request.outputs = {options.output};
+    if (options.png) request.outputs.push_back(std::filesystem::path(options.output).replace_extension(".png"));
     request.keep_checkpoint = options.keep_checkpoint;
     request.resume = options.resume;
     request.sensor = options.sensor;

@@ -36,6 +36,17 @@ TEST_F(BrokenScene, NamesWhatIsMissing) {
     EXPECT_PRED2(has, refused(both + "<ref id=\"nobody\"/>"), "scene.xml:4:");
 }
 
+// A texture called as the picture's preview is: what was read is not written over.
+TEST_F(BrokenScene, KeepsTheFilesItNeeds) {
+    ASSERT_EQ(patina("new scene start.xml", 60).exit_code, 0);
+    ASSERT_EQ(patina("render start.xml -o out.exr --spp 1 --size 2x2", 60).exit_code, 0);
+    fs::remove(folder() / "out.exr");
+    EXPECT_PRED2(
+        has,
+        refused(both + "<texture type=\"bitmap\" id=\"t\"><string name=\"filename\" value=\"out.png\"/></texture>"),
+        "scene.xml:4:");
+}
+
 TEST_F(BrokenScene, NamesGeometryThatIsNone) {
     write_file(folder() / "nan.obj", "v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n");
     write_file(folder() / "flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");

@@ -358,5 +358,44 @@ TEST(Moment, IsItsInnerIntegrator) {
     EXPECT_THROW(seen(node("integrator", "moment")), Error);
 }
 
+// `aov` needs no integrator inside: the light is path tracing's.
+TEST(FurtherChannels, StandAlone) {
+    const StokesImage image =
+        render_tree(scene({node("integrator", "aov", {{"aovs", std::string("far:depth")}}), constant_light(2),
+                           node("shape", "rectangle"), needle({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 4)}));
+    // Half of a sky of 2.
+    EXPECT_NEAR(mean_stokes(image)[0], 1, 1e-5);
+}
+
+// A film moved by half its width to the right sees on its left half what the whole one has on its right; to light
+// traced forward as well.
+TEST(PrincipalPoint, MovesTheFilm) {
+    const auto picture = [](double offset_x, double offset_y, const char* integrator) {
+        const Node camera = perspective(look_at({0, 0, 4}, {0, 0, 0}, {0, 1, 0}), 40, 16, 16, 256);
+        camera->entries.push_back({"principal_point_offset_x", offset_x, {}});
+        camera->entries.push_back({"principal_point_offset_y", offset_y, {}});
+        RenderOptions options;
+        options.integrator = integrator;
+        // A wall whose brightness falls from its lower left to its upper right.
+        const Node lamp = node("emitter", "point", {{"position", Vector3d(-3, -3, 2)}, uniform("intensity", 30)});
+        return render_tree(scene({path(2), camera, lamp, node("shape", "rectangle", {{"to_world", scale(9, 9, 1)}})}),
+                           options);
+    };
+    for (const char* integrator : {"path", "light"}) {
+        const StokesImage whole = picture(0, 0, integrator), moved = picture(0.5, -0.25, integrator);
+        const auto mean_of = [](const StokesImage& image, int x0, int x1, int y0, int y1) {
+            double sum = 0;
+            for (int y = y0; y < y1; ++y)
+                for (int x = x0; x < x1; ++x) sum += image.stokes(static_cast<std::size_t>(y) * 16 + x, 8)[0];
+            return sum / ((x1 - x0) * (y1 - y0));
+        };
+        const double expected = mean_of(whole, 8, 16, 0, 12), found = mean_of(moved, 0, 8, 4, 16);
+        // Of 96 pixels with 256 samples each, by path tracing free of noise but for the place in the pixel; the light
+        // that meets the film is a tenth of all: 4 sqrt(10 / 24576).
+        EXPECT_NEAR(found, expected, 0.08 * expected) << integrator;
+        EXPECT_GT(std::abs(mean_of(whole, 0, 8, 4, 16) - expected), 0.2 * expected);
+    }
+}
+
 }  // namespace
 }  // namespace patina::render::test

@@ -52,6 +52,15 @@ TEST(TextureCoordinates, OfASphereAreAzimuthAndPolarAngle) {
     expect_uv(met(node("shape", "sphere"), 3 * at, at), 0.25 + 0.7 / (2 * pi), std::acos(0.8) / pi);
 }
 
+// Also where nothing but the picture of them asks for them.
+TEST(TextureCoordinates, AreSeenWithoutATexture) {
+    const auto built =
+        build_scene(*scene({node("integrator", "aov", {{"aovs", std::string("t:uv")}}), node("shape", "sphere"),
+                            constant_light(), needle({9, 9, 9}, {0, 0, 0}, {0, 1, 0}, 1)}),
+                    {});
+    EXPECT_TRUE(built->geometry.needs_uv);
+}
+
 TEST(TextureCoordinates, OfACylinderAreAzimuthAndHeight) {
     const auto cylinder = [](const Vector3d& p1) {
         return node("shape", "cylinder", {{"p0", Vector3d(0, 0, 0)}, {"p1", p1}});

@@ -266,6 +266,23 @@ TEST(Jpeg, BrokenFilesAreRefused) {
     EXPECT_THAT(error_of([&] { read_bitmap(folder.write("huge.jpg", huge)); }), HasSubstr("header cannot be true"));
 }
 
+TEST(Jpeg, SurvivesMutation) {
+    const ScratchFolder folder;
+    std::mt19937 random(7);
+    for (const std::string& good : {grey_jpeg, colour_jpeg})
+        for (int round = 0; round < 400; ++round) {
+            std::string bytes = good;
+            for (int changes = 1 + static_cast<int>(random() % 3); changes > 0; --changes)
+                bytes[random() % bytes.size()] = static_cast<char>(random());
+            try {
+                const Bitmap image = read_bitmap(folder.write("mutant.jpg", bytes));
+                EXPECT_EQ(image.data.size(), std::size_t(image.width) * image.height * image.channels.size());
+            } catch (const Error& error) {
+                EXPECT_EQ(error.kind(), ErrorKind::input);
+            }
+        }
+}
+
 TEST(BitmapFile, FloatMapsStartAtTheBottom) {
     const ScratchFolder folder;
     const float values[] = {1, 2, 3, 4};  // 2 x 2, bottom row first

@@ -321,5 +321,22 @@ TEST(SerializedFile, BrokenOnesAreRefused) {
     EXPECT_THAT(error_of([&] { read_serialized(folder.write("b.serialized", huge), 0); }), HasSubstr("are announced"));
 }
 
+TEST(SerializedFile, SurvivesMutation) {
+    const ScratchFolder folder;
+    std::mt19937 random(11);
+    const std::string good = serialized_file(4);
+    for (int round = 0; round < 500; ++round) {
+        std::string bytes = good;
+        for (int changes = 1 + static_cast<int>(random() % 3); changes > 0; --changes)
+            bytes[random() % bytes.size()] = static_cast<char>(random());
+        try {
+            const MeshFile file = read_serialized(folder.write("mutant.serialized", bytes), 1);
+            EXPECT_FALSE(file.mesh.triangles.empty());
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::input);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace patina::io

@@ -179,11 +179,24 @@ bool is_black(const StokesImage& image) {
     return true;
 }
 
+void expect_kept(const Properties& node, const std::vector<fs::path>& outputs) {
+    for (const Properties::Entry& entry : node.entries)
+        if (const auto* text = std::get_if<std::string>(&entry.value))
+            for (const fs::path& output : outputs) {
+                std::error_code none;
+                if (fs::is_regular_file(*text, none) && fs::equivalent(*text, output, none))
+                    throw input_error(entry.where, fmt::format("the picture would be written over \"{}\"", *text),
+                                      "the scene needs this file", "give -o another name");
+            }
+    for (const auto& child : node.children) expect_kept(*child.node, outputs);
+}
+
 }  // namespace
 
 render::Pictures render_scene(const RenderRequest& request, const JobControl& control) {
     std::vector<std::string> warnings;
     const std::shared_ptr<const Properties> tree = io::read_mitsuba_scene(request.scene, request.variables);
+    expect_kept(*tree, request.outputs);
     PictureIdentity identity(*tree);
     render::SceneResources resources = scene_resources(warnings, control);
     identity.watch(resources);

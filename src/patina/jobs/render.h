@@ -19,6 +19,9 @@ struct RenderRequest {
     std::string command;                           // for provenance
     std::string sensor;                            // of several, by id or number; "" is the first
 
+    // What will be written: an Error(input) when the scene names one of these files, as a texture for instance.
+    std::vector<std::filesystem::path> outputs;
+
     // Where the state is kept every so often and when stopped; removed when the picture is done. Empty: nowhere.
     std::filesystem::path checkpoint;
     double checkpoint_interval_s = 60;

@@ -112,6 +112,8 @@ void add_sensors(std::vector<PluginDescriptor>& all) {
         {"far_clip", "number", "scene units", "10000", "", "accepted, without effect"}};
     std::vector<ParameterDescriptor> camera = planes;
     camera.insert(camera.end(), field_of_view.begin(), field_of_view.end());
+    for (const char* name : {"principal_point_offset_x", "principal_point_offset_y"})
+        camera.push_back({name, "number", "film size", "0", "-10 .. 10", "moves the film across the view"});
     std::vector<ParameterDescriptor> pinhole = camera;
     pinhole.push_back({"focus_distance", "number", "scene units", "", "", "accepted, without effect"});
     sensor("perspective", "Pinhole camera.", pinhole);

@@ -43,7 +43,7 @@ class SceneBuilder {
         if (emitters_.empty())
             throw input_error(root_.where, "the scene is dark", "it has no emitter",
                               "add one, for instance \"constant\"");
-        scene_->geometry.needs_uv = any_texture(root_);
+        scene_->geometry.needs_uv = asks_for_uv(root_);
         choose_sensor();
         scene_->geometry.commit();
         build_camera();
@@ -194,9 +194,10 @@ class SceneBuilder {
         return copy;
     }
 
-    static bool any_texture(const Properties& node) {
+    // Textures do, and further channels may.
+    static bool asks_for_uv(const Properties& node) {
         for (const auto& child : node.children)
-            if (child.node->category == "texture" || any_texture(*child.node)) return true;
+            if (child.node->category == "texture" || child.node->type == "aov" || asks_for_uv(*child.node)) return true;
         return false;
     }
 

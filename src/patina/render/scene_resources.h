@@ -18,7 +18,7 @@ namespace patina::render {
 // Every callback that is left empty makes the scene that needs it an Error(not_built) or Error(input) naming the need.
 // Paths are as the scene file gives them made absolute by the reader; errors thrown by a callback pass through.
 struct SceneResources {
-    // `kind` is the shape's plugin name: "obj" or "ply".
+    // `kind` is the shape's plugin name, "obj" or "ply", or "serialized" with the number of the mesh: "serialized 2".
     std::function<std::shared_ptr<const TriangleMesh>(const std::string& path, const std::string& kind)> load_mesh;
 
     // `raw` true: the values are data (no decoding of sRGB).

@@ -13,7 +13,8 @@ void Sensor::rays(const FloatLanes& film_x, const FloatLanes& film_y, const Floa
         return;
     }
     // A pinhole: as ray() does it, lane by lane.
-    const WideFloat x = (1 - 2 * film_x.load()) * tan_half_x, y = (1 - 2 * film_y.load()) * tan_half_y;
+    const WideFloat x = (1 - 2 * (film_x.load() + shift.x())) * tan_half_x,
+                    y = (1 - 2 * (film_y.load() + shift.y())) * tan_half_y;
     const auto to_world = [&](int row) { return rotation(row, 0) * x + rotation(row, 1) * y + rotation(row, 2); };
     const WideVec3 direction = unit(WideVec3{to_world(0), to_world(1), to_world(2)});
     const WideVec3 axis = unit(cross(direction, components(Vec3(rotation.col(1)))));
@@ -125,7 +126,7 @@ bool Sensor::see_perspective(const Vec3& point, const Vec2& lens, Sight& sight) 
 
     // All lens points see a place of the film at the same point of the plane in focus.
     const Vec3 in_focus = start / focus_distance + towards / towards.z();
-    sight.film = {0.5f * (1 - in_focus.x() / tan_half_x), 0.5f * (1 - in_focus.y() / tan_half_y)};
+    sight.film = Vec2(0.5f * (1 - in_focus.x() / tan_half_x), 0.5f * (1 - in_focus.y() / tan_half_y)) - shift;
     // A reconstruction filter reaches over the film's edge.
     if (sight.film.minCoeff() < -0.5f || sight.film.maxCoeff() > 1.5f) return false;
     sight.from = origin + rotation * start;

@@ -26,6 +26,7 @@ struct Sensor {
     Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();  // camera to world
     // Perspective: tangents of the half field of view of the whole film; orthographic: half its size.
     float tan_half_x = 0.5f, tan_half_y = 0.5f;
+    Vec2 shift = Vec2::Zero();  // perspective: of what is seen, to the right and down, in sizes of the film
     float aperture_radius = 0, focus_distance = 1;  // 0: pinhole
     const Geometry* geometry = nullptr;             // of meters on shapes and of far away
     int shape = -1;                                 // of meters on shapes
@@ -43,7 +44,8 @@ struct Sensor {
     // film: position in the whole film, (0, 0) upper left, (1, 1) lower right; lens: in the unit square.
     CameraRay ray(const Vec2& film, const Vec2& lens) const {
         if (kind != Kind::perspective) return other_ray(film, lens);
-        const Vec3 direction((1 - 2 * film.x()) * tan_half_x, (1 - 2 * film.y()) * tan_half_y, 1);
+        const Vec2 at = film + shift;
+        const Vec3 direction((1 - 2 * at.x()) * tan_half_x, (1 - 2 * at.y()) * tan_half_y, 1);
         CameraRay result;
         result.ray.origin = origin;
         result.ray.direction = unit(rotation * direction);

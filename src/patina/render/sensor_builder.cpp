@@ -73,6 +73,14 @@ void build_camera(const Properties& node, double aspect, Sensor& sensor) {
     }
     sensor.tan_half_x = static_cast<float>(tangent_along_x(node, aspect));
     sensor.tan_half_y = static_cast<float>(sensor.tan_half_x / aspect);
+    for (int axis = 0; axis < 2; ++axis) {
+        const char* name = axis == 0 ? "principal_point_offset_x" : "principal_point_offset_y";
+        const double offset = node.number(name, 0.0);
+        if (!(std::abs(offset) <= 10))
+            throw input_error(node.location_of(name), "the principal point lies far outside of the film",
+                              fmt::format("it is {} sizes of the film from its middle", offset), "keep it within 10");
+        sensor.shift[axis] = static_cast<float>(offset);
+    }
     if (node.type == "thinlens") {
         sensor.aperture_radius = static_cast<float>(node.number("aperture_radius"));
         sensor.focus_distance = static_cast<float>(node.number("focus_distance"));

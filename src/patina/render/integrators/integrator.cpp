@@ -102,6 +102,7 @@ bool is_wrapper(const Properties& integrator) {
 const Properties& wrapped_integrator(const Properties& integrator) {
     if (!is_wrapper(integrator)) return integrator;
     const auto inner = integrator.only_child("integrator");
+    if (!inner && integrator.type == "aov") return integrator;
     if (!inner)
         throw input_error(integrator.where, fmt::format("the {} integrator wraps another", integrator.type),
                           "none is given");
@@ -112,9 +113,11 @@ std::unique_ptr<Integrator> build_integrator(const Properties& node) {
     expect_plugin(node);
     if (is_wrapper(node)) {
         if (node.type == "aov") aovs_of(node);
-        node.only_child("integrator");
+        const auto inner = node.only_child("integrator");
         expect_known_properties(node);
-        return build_integrator(wrapped_integrator(node));
+        // Of an `aov` alone the picture's own channels are path tracing's.
+        if (!inner && node.type == "aov") return std::make_unique<PathIntegrator>(PathIntegrator::Settings{});
+        return build_integrator(inner ? *inner : wrapped_integrator(node));
     }
     auto integrator = build_named(node);
     expect_known_properties(node);
