@@ -25,12 +25,15 @@ int at_least(const Properties& node, const char* name, std::int64_t fallback, st
     return static_cast<int>(value);
 }
 
+// Where light does not fade, only roulette ends a path; begun earlier than asked for it changes no mean.
+constexpr int latest_roulette = 256;
+
 // What all integrators take.
 template <class Settings>
 Settings common_settings(const Properties& node, bool hide_emitters) {
     Settings settings;
     settings.max_depth = at_least(node, "max_depth", -1, -1);
-    settings.rr_depth = at_least(node, "rr_depth", 5, 1);
+    settings.rr_depth = std::min(at_least(node, "rr_depth", 5, 1), latest_roulette);
     settings.hide_emitters = node.boolean("hide_emitters", hide_emitters);
     return settings;
 }
