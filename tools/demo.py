@@ -125,7 +125,8 @@ figcaption { font-size: .85rem; color: #4a515c; padding: .25rem 0; }
 <i>Computation of polarized subsurface BRDF for rendering</i>. Each coating was computed from refractive indices, particle
 radii, concentration and thickness: Lorenz-Mie scattering, the vector radiative transfer equation, then path tracing with
 full Stokes vectors. Colours are CIE 1931. Degrees of polarization run from black (0) to pale yellow
-(1); angles of polarization are hues, as bright as the light is polarized.</p>
+(1); angles of polarization are hues, as bright as the light is polarized: light that vibrates along a radius of the disc has the
+colour found there.</p>
 {{sections}}
 </body></html>
 """

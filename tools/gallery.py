@@ -42,7 +42,7 @@ NEUMANN_TERMS = 6
 # (name, caption, words of `patina image` after the input)
 VIEWS = [
     ("tonemap", "colour", []), ("dolp", "degree of linear polarization", ["--map", "inferno"]),
-    ("aolp", "angle of linear polarization: hue over 180 degrees, as bright as polarized", []),
+    ("aolp", "angle of linear polarization: as on the disc, bright where polarized", []),
     ("docp", "degree of circular polarization: right red, left blue", []),
     ("type", "type: linear cyan, circular yellow", []), ("chirality", "chirality: right blue, left yellow", []),
     ("stokes", "S1/S0", ["--component", 1, "--normalized", "--range", 1]),

@@ -25,7 +25,7 @@ struct Options {
     std::optional<int> component;
     io::SensorNoise sensor;
     bool noise = false;
-    bool normalized = false, manual_exposure = false, no_tone_curve = false;
+    bool normalized = false, manual_exposure = false, no_tone_curve = false, no_legend = false;
 };
 
 // What an operation makes: a picture for the screen, or another Stokes picture.
@@ -35,6 +35,11 @@ io::StokesPlane plane_of(const StokesImage& image, const Options& options) {
     io::BandChoice choice;
     if (options.wavelength > 0.0) choice.wavelength_nm = options.wavelength;
     return io::select_band(image, choice);
+}
+
+// A view with what its colours mean beside it, unless the pixels alone are asked for.
+Bitmap explained(const Bitmap& view, const io::Legend& legend, const Options& options) {
+    return options.no_legend ? view : io::with_legend(view, legend);
 }
 
 io::ColorMap map_named(const std::string& name) {
@@ -47,35 +52,48 @@ Product stokes_view(const StokesImage& image, const Options& options) {
     float used = 0.0f;
     const Bitmap view = io::stokes_view(plane_of(image, options), component, options.normalized, range, used);
     const bool intensity = component == 0;
-    return io::with_legend(
-        view, {intensity ? io::ColorMap::inferno : io::ColorMap::diverging, intensity ? 0.0f : -used, used});
+    return explained(
+        view,
+        io::bar_legend(fmt::format("S{}{}", component, options.normalized ? "/S0" : ""),
+                       intensity ? io::ColorMap::inferno : io::ColorMap::diverging, intensity ? 0.0f : -used, used),
+        options);
 }
 
 Product dolp_view(const StokesImage& image, const Options& options) {
     const io::ColorMap map = map_named(options.map);
-    return io::with_legend(io::dolp_view(plane_of(image, options), map), {map, 0.0f, 1.0f});
+    return explained(io::dolp_view(plane_of(image, options), map), io::bar_legend("DoLP", map, 0.0f, 1.0f), options);
 }
 
 Product aolp_view(const StokesImage& image, const Options& options) {
     const io::AolpStyle style = options.style == "full"    ? io::AolpStyle::full
                                 : options.style == "light" ? io::AolpStyle::light
                                                            : io::AolpStyle::dark;
-    return io::aolp_view(plane_of(image, options), style);
+    return explained(io::aolp_view(plane_of(image, options), style), io::aolp_legend(style), options);
 }
 
 Product docp_view(const StokesImage& image, const Options& options) {
-    return io::with_legend(io::docp_view(plane_of(image, options)), {io::ColorMap::diverging, -1.0f, 1.0f});
+    return explained(io::docp_view(plane_of(image, options)), io::docp_legend(), options);
+}
+
+Product type_view(const StokesImage& image, const Options& options) {
+    return explained(io::type_view(plane_of(image, options)), io::type_legend(), options);
+}
+
+Product chirality_view(const StokesImage& image, const Options& options) {
+    return explained(io::chirality_view(plane_of(image, options)), io::chirality_legend(), options);
 }
 
 // Shares of S0 with their scale.
-Product share_view(const StokesImage& image, const std::vector<float>& shares, const Options& options) {
+Product share_view(const StokesImage& image, const std::vector<float>& shares, const std::string& title,
+                   const Options& options) {
     float used = 0.0f;
     const Bitmap view = io::share_view(image, shares, static_cast<float>(options.range), used);
-    return io::with_legend(view, {io::ColorMap::inferno, 0.0f, used});
+    return explained(view, io::bar_legend(title, io::ColorMap::inferno, 0.0f, used), options);
 }
 
 Product noise_view(const StokesImage& image, const Options& options) {
-    return share_view(image, io::relative_noise(image, options.component.value_or(0)), options);
+    const int component = options.component.value_or(0);
+    return share_view(image, io::relative_noise(image, component), fmt::format("noise S{}/S0", component), options);
 }
 
 Product mosaic(const StokesImage& image, const Options& options) {
@@ -115,10 +133,8 @@ const std::vector<Operation>& operations() {
         {"dolp", "degree of linear polarization, 0 to 1", dolp_view},
         {"aolp", "angle of linear polarization as hue over 180 degrees", aolp_view},
         {"docp", "degree of circular polarization, left blue, right red", docp_view},
-        {"type", "linear cyan, circular yellow (Wilkie & Weidlich 2010)",
-         [](const StokesImage& i, const Options& o) -> Product { return io::type_view(plane_of(i, o)); }},
-        {"chirality", "right blue, left yellow (Wilkie & Weidlich 2010)",
-         [](const StokesImage& i, const Options& o) -> Product { return io::chirality_view(plane_of(i, o)); }},
+        {"type", "linear cyan, circular yellow (Wilkie & Weidlich 2010)", type_view},
+        {"chirality", "right blue, left yellow (Wilkie & Weidlich 2010)", chirality_view},
         {"stokes", "one component (--component) on a diverging map", stokes_view},
         {"polarizer", "through a linear polarizer at --angle-deg", through_element},
         {"waveplate", "through a retarder, fast axis at --angle-deg", through_element},
@@ -188,8 +204,9 @@ int error(const Options& options, Session& session) {
         throw Error(ErrorKind::usage, "patina image error takes a picture, a reference and -o OUT.png");
     expect_writable(options.output);
     const StokesImage a = io::read_stokes_exr(options.input), b = io::read_stokes_exr(options.second);
-    const std::vector<float> shares = io::relative_errors(a, b, options.component.value_or(0));
-    write(share_view(b, shares, options), options.output);
+    const int component = options.component.value_or(0);
+    const std::vector<float> shares = io::relative_errors(a, b, component);
+    write(share_view(b, shares, fmt::format("error S{}/S0", component), options), options.output);
     double mean = 0;
     for (const float share : shares) mean += share / static_cast<double>(shares.size());
     session.console.result(fmt::format("{}: mean relative error {:.4g}", options.output, mean));
@@ -308,6 +325,7 @@ void add_image(CLI::App& program, Session& session) {
         ->add_option("--range", options->range,
                      "stokes, error, noise: end of the colour map (default: 99.5th percentile)")
         ->check(CLI::NonNegativeNumber);
+    command->add_flag("--no-legend", options->no_legend, "views: the pixels alone, without what their colours mean");
     command->add_option("--map", options->map, "dolp: grey | viridis | inferno")
         ->check(CLI::IsMember({"grey", "viridis", "inferno"}));
     command->add_option("--style", options->style, "aolp: dark | light | full")

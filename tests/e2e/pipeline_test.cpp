@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "patina/io/png_file.h"
+
 namespace patina::test {
 namespace {
 
@@ -74,6 +76,17 @@ TEST_F(Pipeline, PaintedSpheresAreRenderedWithPolarization) {
     EXPECT_EQ(patina("image dolp s.exr -o dolp.png").exit_code, 0);
     EXPECT_EQ(patina("image aolp s.exr -o aolp.png").exit_code, 0);
     EXPECT_GT(fs::file_size(folder() / "dolp.png"), 200u);
+}
+
+// A view says what its colours mean, unless its pixels are wanted as data.
+TEST_F(Pipeline, ViewsHaveLegendsUnlessToldOtherwise) {
+    ASSERT_EQ(patina("render " + example("polar_balls.xml").string() + " -o s.exr --size 96x112 --spp 4").exit_code, 0);
+    for (const std::string view : {"aolp", "type", "chirality", "docp", "dolp", "stokes", "noise"}) {
+        ASSERT_EQ(patina("image " + view + " s.exr -o with.png").exit_code, 0) << view;
+        ASSERT_EQ(patina("image " + view + " s.exr -o without.png --no-legend").exit_code, 0) << view;
+        EXPECT_GT(io::read_png(folder() / "with.png").width, 96) << view;
+        EXPECT_EQ(io::read_png(folder() / "without.png").width, 96) << view;
+    }
 }
 
 TEST_F(Pipeline, LightTracingSaysWhatItLeavesOut) {

@@ -57,6 +57,18 @@ TEST(Furnace, GlassSphereVanishesAndStaysUnpolarizedOnAverage) {
     EXPECT_LT(mean.tail<3>().norm(), 8e-3);
 }
 
+// No light fades in a white closed sphere, and roulette is put off for a million segments: the picture is made in a
+// blink all the same. It is black, as no lamp is inside.
+TEST(Furnace, PathsInAWhiteClosedSphereEnd) {
+    for (const char* method : {"path", "volumetric", "distribution", "bidirectional"}) {
+        const auto image = render_tree(
+            scene({node("integrator", method, {{"rr_depth", std::int64_t{1'000'000}}}),
+                   perspective(look_at({0, 0, 0}, {0, 0, 1}, {0, 1, 0}), 60, 4, 4, 1),
+                   node("shape", "sphere", {}, {node("bsdf", "twosided", {}, {diffuse(1.0)})}), constant_light()}));
+        EXPECT_EQ(mean_stokes(image)[0], 0.0) << method;
+    }
+}
+
 TEST(Furnace, PerfectMirrorVanishes) {
     const auto image = render_tree(
         scene({path(-1, {{"rr_depth", std::int64_t{100}}}),

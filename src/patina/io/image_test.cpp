@@ -13,6 +13,7 @@
 #include "patina/io/image_stokes.h"
 #include "patina/io/image_tone.h"
 #include "patina/io/image_views.h"
+#include "patina/io/pixel_font.h"
 #include "patina/spectral/colorimetry.h"
 
 namespace patina::io {
@@ -176,15 +177,84 @@ TEST(ImageViews, ZeroIsTheMiddleOfTheDivergingMap) {
     EXPECT_EQ(range, 0.5f);  // found from the picture
 }
 
-TEST(ImageViews, TheLegendSpansItsColours) {
-    Bitmap picture{"", 64, 64, {"R", "G", "B"}, std::vector<float>(64 * 64 * 3, 0.25f)};
-    const Bitmap wide = with_legend(picture, {ColorMap::viridis, -1, 1});
+Bitmap grey_picture(int side) {
+    return {"", side, side, {"R", "G", "B"}, std::vector<float>(static_cast<std::size_t>(side) * side * 3, 0.25f)};
+}
+
+// Whether some pixel beside the picture has the colour, to what an 8-bit PNG holds.
+bool legend_shows(const Bitmap& wide, int picture_width, const Vector3f& color) {
+    for (int y = 0; y < wide.height; ++y)
+        for (int x = picture_width; x < wide.width; ++x)
+            if ((Eigen::Map<const Vector3f>(wide.pixel(x, y)) - color).norm() < 4e-3f) return true;
+    return false;
+}
+
+TEST(ImageLegend, ABarSpansItsColours) {
+    const Bitmap wide = with_legend(grey_picture(64), bar_legend("", ColorMap::viridis, -1, 1));
     EXPECT_EQ(wide.height, 64);
     EXPECT_EQ(wide.pixel(63, 63)[0], 0.25f);
     const Vector3f top = Eigen::Map<const Vector3f>(wide.pixel(64 + 8 + 2, 8)),
                    bottom = Eigen::Map<const Vector3f>(wide.pixel(64 + 8 + 2, 55));
     EXPECT_EQ(top, color_of(ColorMap::viridis, 1));
     EXPECT_EQ(bottom, color_of(ColorMap::viridis, 0));
+}
+
+// Light that vibrates along a direction of the picture has the colour that the disc has in that direction: horizontal
+// light that of its right and left ends, and so on. A pixel of a disc of 64 is 2 degrees wide at its rim.
+TEST(ImageLegend, TheDiscOfAnglesShowsWhatTheViewShows) {
+    for (const AolpStyle style : {AolpStyle::full, AolpStyle::light, AolpStyle::dark}) {
+        const Legend legend = aolp_legend(style);
+        for (int angle_deg = 0; angle_deg < 360; angle_deg += 15)
+            for (const float degree : {0.25f, 0.99f}) {
+                const double angle = radians(angle_deg);
+                const auto x = static_cast<float>(degree * std::cos(angle)),
+                           y = static_cast<float>(degree * std::sin(angle));
+                const Vector4f light(1, degree * static_cast<float>(std::cos(2 * angle)),
+                                     degree * static_cast<float>(std::sin(2 * angle)), 0);
+                // Rounding of the angle moves a hue by less than a code.
+                EXPECT_LT(
+                    (*legend.color(0.5f + 0.5f * x, 0.5f + 0.5f * y) - color_at(aolp_view(plane_of({light}), style), 0))
+                        .norm(),
+                    4e-3f)
+                    << angle_deg;
+            }
+        EXPECT_FALSE(legend.color(0.0f, 0.0f));  // the corner lies outside
+    }
+}
+
+TEST(ImageLegend, EveryKeyHasTheColoursOfItsView) {
+    const Bitmap picture = grey_picture(256);
+    const auto view_of = [](auto view, const Vector4f& stokes) { return color_at(view(plane_of({stokes})), 0); };
+    const Bitmap type = with_legend(picture, type_legend()), chirality = with_legend(picture, chirality_legend()),
+                 circular = with_legend(picture, docp_legend());
+    for (const Vector4f& light : {Vector4f(1, 1, 0, 0), Vector4f(1, 0, 0, 1)})
+        EXPECT_TRUE(legend_shows(type, 256, view_of(type_view, light)));
+    for (const Vector4f& light : {Vector4f(1, 0, 0, 1), Vector4f(1, 0, 0, -1)}) {
+        EXPECT_TRUE(legend_shows(chirality, 256, view_of(chirality_view, light)));
+        EXPECT_TRUE(legend_shows(circular, 256, view_of(docp_view, light)));
+    }
+}
+
+TEST(ImageLegend, EveryWordCanBeDrawn) {
+    for (const Legend& legend : {aolp_legend(AolpStyle::dark), type_legend(), docp_legend(), chirality_legend(),
+                                 bar_legend("noise S0/S0", ColorMap::grey, -1.23e-30f, 4.56e+07f),
+                                 bar_legend("error S0/S0", ColorMap::grey, 0, 789)}) {
+        EXPECT_TRUE(has_glyphs_for(legend.title)) << legend.title;
+        for (const Legend::Mark& mark : legend.marks) EXPECT_TRUE(has_glyphs_for(mark.text)) << mark.text;
+    }
+    EXPECT_FALSE(has_glyphs_for("?"));
+}
+
+// The picture itself is never touched, and a height is never changed: pictures of a row stay in line.
+TEST(ImageLegend, LeavesThePictureAlone) {
+    for (const int side : {1, 16, 40, 100, 700})
+        for (const Legend& legend : {aolp_legend(AolpStyle::light), type_legend(), docp_legend()}) {
+            const Bitmap picture = grey_picture(side), wide = with_legend(picture, legend);
+            ASSERT_EQ(wide.height, side);
+            ASSERT_GE(wide.width, side);
+            for (int y = 0; y < side; ++y)
+                for (int x = 0; x < side; ++x) ASSERT_EQ(wide.pixel(x, y)[0], 0.25f);
+        }
 }
 
 TEST(ToneMap, TheCurveIsSmoothMonotoneAndBounded) {

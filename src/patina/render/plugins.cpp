@@ -180,7 +180,7 @@ void add_integrators(std::vector<PluginDescriptor>& all) {
                                 std::vector<ParameterDescriptor> more = {}) {
         std::vector<ParameterDescriptor> parameters = {
             {"max_depth", "integer", "", "-1", ">= -1", "segments of a path, 1 = emitters only, -1 = no limit"},
-            {"rr_depth", "integer", "", "5", ">= 1", "segments before Russian roulette begins"},
+            {"rr_depth", "integer", "", "5", ">= 1", "segments before Russian roulette begins, no more than 256"},
             {"hide_emitters", "boolean", "", hide_emitters, "", "emitters do not show directly"}};
         parameters.insert(parameters.end(), schedule.begin(), schedule.end());
         parameters.insert(parameters.end(), more.begin(), more.end());

@@ -1,6 +1,7 @@
 #include "patina/spectral/observer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -16,6 +17,19 @@ const cie::ObserverTable& table_of(Observer observer, int component) {
     return *tables[observer == Observer::cie1931_2deg ? 0 : 1][component];
 }
 
+constexpr int neighbours = 6;
+
+// Of the values at 0, 1, 2 ... in Lagrange's polynomial through all of them.
+std::array<double, neighbours> polynomial_weights(double x) {
+    std::array<double, neighbours> weights;
+    for (int i = 0; i < neighbours; ++i) {
+        weights[i] = 1.0;
+        for (int j = 0; j < neighbours; ++j)
+            if (j != i) weights[i] *= (x - j) / (i - j);
+    }
+    return weights;
+}
+
 }  // namespace
 
 Eigen::Vector3d colour_matching(Observer observer, double wavelength_nm) {
@@ -23,14 +37,16 @@ Eigen::Vector3d colour_matching(Observer observer, double wavelength_nm) {
         return Eigen::Vector3d::Zero();
 
     const double position = (wavelength_nm - cie::observer_min_nm) / cie::observer_step_nm;
-    const int i = std::min(static_cast<int>(position), cie::observer_samples - 2);
-    const double t = position - i;
-    Eigen::Vector3d result;
+    const int first =
+        std::clamp(static_cast<int>(position) - neighbours / 2 + 1, 0, cie::observer_samples - neighbours);
+    const std::array<double, neighbours> weights = polynomial_weights(position - first);
+    Eigen::Vector3d result = Eigen::Vector3d::Zero();
     for (int c = 0; c < 3; ++c) {
         const cie::ObserverTable& table = table_of(observer, c);
-        result[c] = (1.0 - t) * table[i] + t * table[i + 1];
+        for (int k = 0; k < neighbours; ++k) result[c] += weights[k] * table[first + k];
     }
-    return result;
+    // Where zbar ends the polynomial swings below zero by some 1e-6.
+    return result.cwiseMax(0.0);
 }
 
 double luminance_integral_nm(Observer observer) {

@@ -10,8 +10,8 @@ enum class Observer {
     cie1964_10deg  // paint chips, large fields
 };
 
-// Colour matching functions (xbar, ybar, zbar), linear between the CIE's values every 5 nm on [360, 830] nm, zero
-// outside.
+// Colour matching functions (xbar, ybar, zbar): the CIE's values every 5 nm on [360, 830] nm, polynomials of
+// the fifth degree between them (as CIE 167:2005 recommends for evenly spaced values), zero outside.
 Eigen::Vector3d colour_matching(Observer observer, double wavelength_nm);
 
 // Sum of ybar times 5 nm, the integral that makes a uniform unit spectrum Y = 1: 106.857 nm (2 deg), 116.662 nm (10

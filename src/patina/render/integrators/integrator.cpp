@@ -31,12 +31,15 @@ void accept_schedule(const Properties& node) {
     at_least(node, "block_size", 0, 0);
 }
 
+// Where light does not fade, only roulette ends a path; begun earlier than asked for it changes no mean.
+constexpr int latest_roulette = 256;
+
 // What all integrators take.
 template <class Settings>
 Settings common_settings(const Properties& node, bool hide_emitters) {
     Settings settings;
     settings.max_depth = at_least(node, "max_depth", -1, -1);
-    settings.rr_depth = at_least(node, "rr_depth", 5, 1);
+    settings.rr_depth = std::min(at_least(node, "rr_depth", 5, 1), latest_roulette);
     settings.hide_emitters = node.boolean("hide_emitters", hide_emitters);
     accept_schedule(node);
     return settings;
