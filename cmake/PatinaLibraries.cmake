@@ -9,6 +9,8 @@ find_package(yaml-cpp REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(PNG REQUIRED)
+find_package(JPEG REQUIRED)
+find_package(ZLIB REQUIRED)
 find_package(embree 3 REQUIRED)
 # Debian 12's CMake files of Imath name a Python library that its package does not ship; CMake's own module for HDF5 wants
 # a C compiler. Both libraries have sound pkg-config files.

@@ -221,5 +221,31 @@ TEST_F(BsdfFormula, PrincipledIsTheSumOfBurleysLobes) {
     }
 }
 
+// White glass of Burley's model is a rough dielectric of alpha = roughness^2, from both sides and with its densities;
+// tinted it passes the square root of its colour, which light that goes in and out meets twice.
+TEST_F(BsdfFormula, PrincipledGlassIsARoughDielectric) {
+    const double roughness = 0.6;
+    const Value ggx{"distribution", std::string("ggx")};
+    const Bsdf glass = make("principled", {uniform("base_color", 1), {"spec_trans", 1.0}, {"roughness", roughness}});
+    const Bsdf tinted =
+        make("principled", {uniform("base_color", 0.49), {"spec_trans", 1.0}, {"roughness", roughness}});
+    const Bsdf rough =
+        make("roughdielectric", {ggx, {"alpha", roughness * roughness}, {"int_ior", 1.5}, {"ext_ior", 1.0}});
+    int pairs = 0;
+    for (double theta_o : {20.0, 70.0, 110.0, 155.0})
+        for (double theta_i : {10.0, 60.0, 125.0, 170.0})
+            for (double phi : {30.0, 170.0}) {
+                const Vec3 o = direction(theta_o, 0), i = direction(theta_i, phi);
+                const double expected = intensity(rough, o, i);
+                if (!(expected > 0)) continue;
+                ++pairs;
+                // Single precision.
+                EXPECT_NEAR(intensity(glass, o, i), expected, 1e-4 * expected) << theta_o << " " << theta_i;
+                const double share = (theta_o < 90) == (theta_i < 90) ? 1 : 0.7;
+                EXPECT_NEAR(intensity(tinted, o, i), share * expected, 1e-4 * expected) << theta_o << " " << theta_i;
+            }
+    EXPECT_GT(pairs, 10);
+}
+
 }  // namespace
 }  // namespace patina::render::test

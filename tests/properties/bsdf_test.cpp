@@ -94,6 +94,12 @@ std::vector<Case> cases() {
                    {},
                    {},
                    true});
+    all.push_back({"principled", {{"spec_trans", 1.0}, {"roughness", 0.6}}});
+    all.push_back({"principled",
+                   {uniform("base_color", 0.8), {"spec_trans", 0.6}, {"metallic", 0.2}, {"clearcoat", 0.5}},
+                   {},
+                   {},
+                   true});
     all.push_back({"orennayar", {uniform("reflectance", 0.95), {"sigma", 35.0}}});
     all.push_back({"mask", {uniform("opacity", 0.25)}, {node("bsdf", "plastic")}});
     all.push_back(

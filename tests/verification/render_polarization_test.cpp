@@ -81,6 +81,22 @@ TEST(Polarizers, ObeyMalusLaw) {
     }
 }
 
+// A film of polarizers crossed in neighbouring squares, as in a polarization camera, before a polarizer.
+TEST(Polarizers, MayTurnTheirAxisFromPlaceToPlace) {
+    for (const char* angle : {"theta", "delta"}) {
+        // A half-wave plate at 45 degrees turns the axis by 90 degrees where there is one.
+        const bool polarizes = std::string(angle) == "theta";
+        Node model = polarizes ? node("bsdf", "polarizer") : node("bsdf", "retarder", {{"theta", 45.0}});
+        const Node board = node("texture", "checkerboard", {{"color0", 0.0}, {"color1", polarizes ? 90.0 : 180.0}});
+        model->children.push_back({angle, board});
+        for (const auto& [x, passed] : {std::pair{-0.5, 0.5}, {0.5, 0.0}}) {
+            const Node film = node("shape", "rectangle", {{"to_world", translate({x, -0.5, 1})}}, {model});
+            EXPECT_NEAR(through({element("polarizer", 0, 0), film, element("polarizer", 2, 0)})[0], passed, 1e-6)
+                << angle << " " << x;
+        }
+    }
+}
+
 // A quarter-wave plate with its fast axis at +45 degrees between crossed polarizers passes half of the light; what
 // leaves it is circular: the field along the slow axis lags by a quarter period, so it turns clockwise for the camera:
 // V > 0.

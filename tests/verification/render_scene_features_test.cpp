@@ -336,5 +336,27 @@ TEST(TexturedRoughness, IsTheModelOfEachTexel) {
     EXPECT_THROW(build_bsdf(*node("bsdf", "roughconductor", {{"alpha", 0.0}}), builder), Error);
 }
 
+// Bouguer (1729), Beer (1852): through two units of a medium that only absorbs exp(-2 sigma_t) is left.
+TEST(ConstantVolume, IsACoefficientOfAMedium) {
+    const auto volume = [](double value) { return node("volume", "constvolume", {uniform("value", value)}); };
+    const Node medium =
+        named(named(node("medium", "homogeneous", {}, {volume(0.7), volume(0)}), 0, "sigma_t"), 1, "albedo");
+    const Node cube = named(node("shape", "cube", {}, {node("bsdf", "null"), medium}), 1, "interior");
+    const Node tree = scene({node("integrator", "volpath", {{"samples_per_pass", std::int64_t{4}}}), cube,
+                             constant_light(), needle({0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 64)});
+    // Absorption is counted exactly or drawn: 1024 paths of probability 1/4.
+    EXPECT_NEAR(mean_stokes(render_tree(tree))[0], std::exp(-1.4), 4 * std::sqrt(0.25 * 0.75 / 1024));
+}
+
+// What only looks at the mean or the variance of a picture leaves it as it is.
+TEST(Moment, IsItsInnerIntegrator) {
+    const auto seen = [](const Node& integrator) {
+        return mean_stokes(
+            render_tree(scene({integrator, constant_light(3), needle({0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 1)})));
+    };
+    EXPECT_NEAR(seen(node("integrator", "moment", {}, {path(2)}))[0], 3, 1e-5);
+    EXPECT_THROW(seen(node("integrator", "moment")), Error);
+}
+
 }  // namespace
 }  // namespace patina::render::test

@@ -10,6 +10,7 @@
 #include "patina/core/error.h"
 #include "patina/core/files.h"
 #include "patina/io/exr_file.h"
+#include "patina/io/jpeg_file.h"
 #include "patina/io/located_text.h"
 #include "patina/io/png_file.h"
 
@@ -190,13 +191,15 @@ Bitmap read_bitmap(const fs::path& path, bool raw) {
         image = read_exr_bitmap(path);
     else if (extension == ".png")
         image = read_png(path, raw);
+    else if (extension == ".jpg" || extension == ".jpeg")
+        image = read_jpeg(path, raw);
     else if (extension == ".pfm")
         image = read_pfm(path);
     else if (extension == ".hdr" || extension == ".rgbe")
         image = read_hdr(path);
     else
         throw input_error({path.string()}, fmt::format("pictures of type {} are not read", in_quotes(extension)), "",
-                          "known: .exr, .png, .pfm, .hdr");
+                          "known: .exr, .png, .jpg, .pfm, .hdr");
     expect_values(image, raw);
     return image;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Pictures for textures and environment maps, by extension: .exr, .png, .pfm, .hdr.
+// Pictures for textures and environment maps, by extension: .exr, .png, .jpg, .pfm, .hdr.
 
 #include <filesystem>
 #include <map>
@@ -9,8 +9,9 @@
 
 namespace patina::io {
 
-// Linear values, row 0 on top. From .exr: R, G, B and A, else Y, else S0.R, S0.G, S0.B. `raw` matters for .png only:
-// the numbers are data. Values that are not finite, or negative unless `raw`, are an Error(input) naming the pixel.
+// Linear values, row 0 on top. From .exr: R, G, B and A, else Y, else S0.R, S0.G, S0.B. `raw` matters for .png and .jpg
+// only: the numbers are data. Values that are not finite, or negative unless `raw`, are an Error(input) naming the
+// pixel.
 Bitmap read_bitmap(const std::filesystem::path& path, bool raw = false);
 
 // Channels under their names, 32-bit float, and text attributes patina.<key>.

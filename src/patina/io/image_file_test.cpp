@@ -217,6 +217,55 @@ TEST(Png, BrokenFilesAndNumbersAreRefused) {
     EXPECT_FALSE(std::filesystem::exists(folder / "nan.png"));
 }
 
+std::string from_hexadecimal(std::string_view digits) {
+    std::string bytes;
+    for (std::size_t i = 0; i + 1 < digits.size(); i += 2)
+        bytes += static_cast<char>(std::stoi(std::string(digits.substr(i, 2)), nullptr, 16));
+    return bytes;
+}
+// 16 x 8 pixels in two blocks, without loss but for rounding: grey 188 and 0; red 188 and green 255.
+const std::string grey_jpeg = from_hexadecimal(
+    "ffd8ffdb004300010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101"
+    "01010101010101010101010101010101ffc0000b080008001001011100ffc400150001010000000000000000000000000000090bffc400"
+    "14100100000000000000000000000000000000ffda0008010100003f0078121f7fffd9");
+const std::string colour_jpeg = from_hexadecimal(
+    "ffd8ffdb004300010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101"
+    "01010101010101010101010101010101ffdb00430101010101010101010101010101010101010101010101010101010101010101010101"
+    "010101010101010101010101010101010101010101010101010101010101ffc00011080008001003011100021101031101ffc400140001"
+    "0000000000000000000000000000000affc40014100100000000000000000000000000000000ffc4001601010101000000000000000000"
+    "00000000090a0bffc40014110100000000000000000000000000000000ffda000c03010002110311003f0037e3fd5e05e017d8dbbfffd9");
+
+TEST(Jpeg, BlocksOfOneColourAreExact) {
+    const ScratchFolder folder;
+    const Bitmap grey = read_bitmap(folder.write("grey.jpg", grey_jpeg));
+    ASSERT_EQ(grey.width, 16);
+    ASSERT_EQ(grey.height, 8);
+    ASSERT_EQ(grey.channels, std::vector<std::string>{"Y"});
+    EXPECT_EQ(*grey.pixel(3, 2), static_cast<float>(spectral::srgb_decode(188 / 255.0)));
+    EXPECT_EQ(*grey.pixel(12, 7), 0);
+    EXPECT_EQ(*read_bitmap(folder / "grey.jpg", true).pixel(0, 0), static_cast<float>(188 / 255.0));
+
+    // Luma and chroma are whole numbers: a code or two of a channel are lost.
+    const Bitmap colour = read_bitmap(folder.write("colour.JPG", colour_jpeg), true);
+    ASSERT_EQ(colour.channel_count(), 3);
+    const float expected[2][3] = {{188, 0, 0}, {0, 255, 0}};
+    for (int block : {0, 1})
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(colour.pixel(8 * block + 4, 4)[c], expected[block][c] / 255, 2.5 / 255);
+}
+
+TEST(Jpeg, BrokenFilesAreRefused) {
+    const ScratchFolder folder;
+    // All but the end marker is needed.
+    for (std::size_t size = 0; size + 4 < grey_jpeg.size(); size += 7)
+        EXPECT_THROW(read_bitmap(folder.write("cut.jpg", grey_jpeg.substr(0, size))), Error) << size;
+    std::string huge = grey_jpeg;
+    // Height and width in the frame header.
+    const std::size_t frame = huge.find("\xff\xc0");
+    ASSERT_NE(frame, std::string::npos);
+    for (std::size_t i : {5, 6, 7, 8}) huge[frame + i] = '\xf0';
+    EXPECT_THAT(error_of([&] { read_bitmap(folder.write("huge.jpg", huge)); }), HasSubstr("header cannot be true"));
+}
+
 TEST(BitmapFile, FloatMapsStartAtTheBottom) {
     const ScratchFolder folder;
     const float values[] = {1, 2, 3, 4};  // 2 x 2, bottom row first

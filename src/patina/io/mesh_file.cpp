@@ -1,9 +1,12 @@
 #include "patina/io/mesh_file.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
+
+#include "patina/io/located_text.h"
 
 namespace patina::io {
 
@@ -24,6 +27,12 @@ void expect_finite(const TriangleMesh& mesh, const SourceLocation& where) {
     for (std::size_t i = 0; i < mesh.uvs.size(); ++i)
         if (!mesh.uvs[i].allFinite())
             throw input_error(where, fmt::format("vertex {} has a texture coordinate that is not finite", i + 1));
+    for (const MeshAttribute& attribute : mesh.attributes)
+        for (std::size_t i = 0; i < attribute.values.size(); ++i)
+            if (!std::isfinite(attribute.values[i]))
+                throw input_error(
+                    where, fmt::format("{} {} of \"{}\" is not finite", attribute.of_triangles ? "triangle" : "vertex",
+                                       i / attribute.channels + 1, attribute.name));
 }
 
 // Twice the triangle's area times its normal.
@@ -47,7 +56,7 @@ bool has_area(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& tria
 void drop_flat_triangles(MeshFile& file) {
     auto& triangles = file.mesh.triangles;
     const std::size_t before = triangles.size();
-    std::erase_if(triangles, [&](const auto& triangle) { return !has_area(file.mesh, triangle); });
+    file.mesh.keep_triangles([&](const auto& triangle) { return has_area(file.mesh, triangle); });
     if (triangles.size() != before)
         file.warnings.push_back(fmt::format("{}: {} of {} triangles have no area and are left out", file.mesh.name,
                                             before - triangles.size(), before));
@@ -97,8 +106,12 @@ void finish_mesh(MeshFile& file, const SourceLocation& where) {
 MeshFile read_mesh(const std::filesystem::path& path, std::string_view kind) {
     if (kind == "obj") return read_obj(path);
     if (kind == "ply") return read_ply(path);
+    constexpr std::string_view packed = "serialized ";
+    if (kind.starts_with(packed))
+        return read_serialized(path,
+                               static_cast<int>(parse_integer(kind.substr(packed.size()), {path.string()}, "mesh")));
     throw input_error({path.string()}, fmt::format("unknown mesh format \"{}\"", kind), "",
-                      did_you_mean(kind, {"obj", "ply"}));
+                      did_you_mean(kind, {"obj", "ply", "serialized"}));
 }
 
 }  // namespace patina::io

@@ -197,5 +197,129 @@ TEST(ObjFile, SurvivesMutation) {
     }
 }
 
+// sRGB 188 is linear 0.503 (IEC 61966-2-1); other whole numbers stand for 0 .. 1.
+TEST(PlyFile, OtherPropertiesAreAttributesByMitsubasNames) {
+    const MeshFile file =
+        ply("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+            "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\nproperty float heat\n"
+            "property float flow_x\nproperty float flow_y\nproperty float flow_z\nproperty float alone_0\n"
+            "element face 1\nproperty list uchar int vertex_indices\nproperty float ink_r\nproperty float ink_g\n"
+            "property float ink_b\nproperty ushort age\nend_header\n"
+            "0 0 0 188 0 255 9 0.5 1 2 3 7\n1 0 0 0 0 0 9 0.6 4 5 6 8\n1 1 0 0 0 0 9 0.7 0 0 0 9\n0 1 0 0 0 0 9 0.8 0 "
+            "0 0 10\n"
+            "4 0 1 2 3 0.1 0.2 0.3 65535\n");
+    const auto& all = file.mesh.attributes;
+    ASSERT_EQ(all.size(), 6u);
+    EXPECT_EQ(all[0].name, "vertex_color");
+    ASSERT_EQ(all[0].values.size(), 12u);
+    EXPECT_NEAR(all[0].values[0], 0.5029, 1e-4);
+    EXPECT_EQ(all[0].values[2], 1);
+    EXPECT_EQ(all[1].name, "vertex_heat");
+    EXPECT_EQ(all[1].values, (std::vector<float>{0.5f, 0.6f, 0.7f, 0.8f}));
+    EXPECT_EQ(all[2].name, "vertex_flow");
+    EXPECT_EQ(all[2].channels, 3);
+    EXPECT_EQ(all[2].values[5], 6);
+    EXPECT_EQ(all[3].name, "vertex_alone");
+    // Two triangles of one quad share its values.
+    EXPECT_EQ(all[4].name, "face_ink_color");
+    EXPECT_EQ(all[4].values, (std::vector<float>{0.1f, 0.2f, 0.3f, 0.1f, 0.2f, 0.3f}));
+    EXPECT_EQ(all[5].name, "face_age");
+    EXPECT_EQ(all[5].values, (std::vector<float>{1, 1}));
+}
+
+TEST(PlyFile, ATriangleWithoutAreaTakesItsAttributesAway) {
+    const MeshFile file =
+        ply("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+            "element face 3\nproperty float a\nproperty list uchar int vertex_indices\nend_header\n"
+            "0 0 0\n1 0 0\n0 1 0\n1 3 0 1 2\n2 3 0 1 1\n3 3 2 1 0\n");
+    EXPECT_EQ(file.mesh.attributes.at(0).values, (std::vector<float>{1, 3}));
+}
+
+TEST(ObjFile, NumbersBehindAPositionAreItsColour) {
+    const MeshFile file = obj("v 0 0 0\nv 1 0 0 1 0 0.735358\nv 0 1 0 0 1 0\nf 3 2 1\n");
+    ASSERT_EQ(file.mesh.attributes.size(), 1u);
+    EXPECT_EQ(file.mesh.attributes[0].name, "vertex_color");
+    const std::vector<float>& c = file.mesh.attributes[0].values;
+    ASSERT_EQ(c.size(), 9u);  // in the order of first use; white where none is given
+    EXPECT_EQ(c[1], 1);
+    EXPECT_EQ(c[3], 1);
+    EXPECT_NEAR(c[5], 0.5, 1e-5);  // 0.735358 of sRGB
+    EXPECT_EQ(c[8], 1);
+}
+
+// Two meshes in the format of Mitsuba's plugin `serialized`: stored without compression by zlib (RFC 1950, 1951), after
+// which come their offsets.
+template <class T>
+void append(std::string& bytes, const T& value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
+}
+std::string stored_by_zlib(const std::string& bytes) {
+    std::uint32_t a = 1, b = 0;
+    for (const char c : bytes) a = (a + static_cast<unsigned char>(c)) % 65521, b = (b + a) % 65521;
+    std::string packed("\x78\x01\x01", 3);
+    append(packed, static_cast<std::uint16_t>(bytes.size()));
+    append(packed, static_cast<std::uint16_t>(~bytes.size()));
+    packed += bytes;
+    for (const std::uint32_t half : {b, a})
+        packed += static_cast<char>(half >> 8), packed += static_cast<char>(half & 255);
+    return packed;
+}
+template <class Real>
+std::string serialized_triangle(Real width, std::uint32_t flags, bool with_name) {
+    std::string mesh;
+    append(mesh, flags);
+    if (with_name) mesh += std::string("a name\0", 7);
+    append(mesh, std::uint64_t{3});
+    append(mesh, std::uint64_t{1});
+    for (const Real x : {Real(0), Real(0), Real(0), width, Real(0), Real(0), Real(0), width, Real(0)}) append(mesh, x);
+    if (flags & 0x8)
+        for (int channel = 0; channel < 9; ++channel) append(mesh, static_cast<Real>(channel / 8.0));
+    for (const std::uint32_t corner : {0u, 1u, 2u}) append(mesh, corner);
+    return stored_by_zlib(mesh);
+}
+std::string serialized_file(std::uint16_t version) {
+    std::string file;
+    std::vector<std::uint64_t> offsets;
+    for (const std::string& mesh :
+         {serialized_triangle<float>(2, 0x1008, version == 4), serialized_triangle<double>(3, 0x2000, version == 4)}) {
+        offsets.push_back(file.size());
+        append(file, std::uint16_t{0x041c});
+        append(file, version);
+        file += mesh;
+    }
+    for (const std::uint64_t offset : offsets)
+        version == 4 ? append(file, offset) : append(file, static_cast<std::uint32_t>(offset));
+    append(file, std::uint32_t{2});
+    return file;
+}
+
+TEST(SerializedFile, HoldsSeveralMeshesOfEitherPrecision) {
+    const ScratchFolder folder;
+    for (const std::uint16_t version : {std::uint16_t{3}, std::uint16_t{4}}) {
+        const auto path = folder.write("a.serialized", serialized_file(version));
+        const TriangleMesh first = read_mesh(path, "serialized 0").mesh, second = read_mesh(path, "serialized 1").mesh;
+        EXPECT_EQ(first.positions.at(1), Eigen::Vector3f(2, 0, 0));
+        EXPECT_EQ(second.positions.at(2), Eigen::Vector3f(0, 3, 0));
+        ASSERT_EQ(first.attributes.size(), 1u);
+        EXPECT_EQ(first.attributes[0].values.at(4), 0.5f);
+        EXPECT_TRUE(second.attributes.empty());
+        EXPECT_EQ(second.triangles.size(), 1u);
+    }
+}
+
+TEST(SerializedFile, BrokenOnesAreRefused) {
+    const ScratchFolder folder;
+    const std::string good = serialized_file(4);
+    for (std::size_t size = 0; size < good.size(); size += 5)
+        EXPECT_THROW(read_serialized(folder.write("cut.serialized", good.substr(0, size)), 0), Error) << size;
+    EXPECT_THAT(error_of([&] { read_serialized(folder.write("a.serialized", good), 2); }),
+                HasSubstr("there is no mesh 2"));
+    // More vertices than the file can hold.
+    std::string huge = good;
+    const std::size_t count = huge.find(std::string("\x03\0\0\0\0\0\0\0", 8));
+    huge[count + 3] = 0x7f;
+    EXPECT_THAT(error_of([&] { read_serialized(folder.write("b.serialized", huge), 0); }), HasSubstr("are announced"));
+}
+
 }  // namespace
 }  // namespace patina::io

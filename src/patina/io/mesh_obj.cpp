@@ -7,6 +7,7 @@
 #include "patina/core/files.h"
 #include "patina/io/located_text.h"
 #include "patina/io/mesh_file.h"
+#include "patina/spectral/colorimetry.h"
 
 namespace patina::io {
 
@@ -63,8 +64,10 @@ class ObjReader {
     SourceLocation where_;
     MeshFile file_;
     std::vector<Eigen::Vector3f> positions_, normals_;
+    std::vector<Eigen::Vector3f> colours_;  // of positions up to the last that has one
     std::vector<Eigen::Vector2f> uvs_;
     std::unordered_map<Corner, std::uint32_t, CornerHash> vertices_;
+    std::vector<std::size_t> source_;  // position of each vertex of the mesh
     std::size_t corners_without_uv_ = 0, corners_without_normal_ = 0;
 };
 
@@ -87,6 +90,11 @@ void ObjReader::read_line(std::string_view line) {
     const std::string_view key = words[0];
     if (key == "v") {
         positions_.push_back(read_numbers<3>(values));
+        // A fourth number alone is a weight.
+        if (values.size() >= 6) {
+            colours_.resize(positions_.size() - 1, Eigen::Vector3f::Ones());
+            colours_.push_back(read_numbers<3>(values.subspan(3)));
+        }
     } else if (key == "vn") {
         normals_.push_back(read_numbers<3>(values));
     } else if (key == "vt") {
@@ -147,6 +155,7 @@ std::uint32_t ObjReader::vertex(const Corner& corner) {
     const auto [known, added] = vertices_.emplace(corner, static_cast<std::uint32_t>(file_.mesh.positions.size()));
     if (!added) return known->second;
     file_.mesh.positions.push_back(positions_[corner[0]]);
+    source_.push_back(static_cast<std::size_t>(corner[0]));
     file_.mesh.uvs.push_back(corner[1] < 0 ? Eigen::Vector2f(0, 0) : uvs_[corner[1]]);
     file_.mesh.normals.push_back(corner[2] < 0 ? Eigen::Vector3f(0, 0, 0) : normals_[corner[2]]);
     corners_without_uv_ += corner[1] < 0;
@@ -161,6 +170,14 @@ void ObjReader::finish() {
     if (!file_.mesh.uvs.empty() && corners_without_uv_ > 0)
         file_.warnings.push_back(fmt::format("{}: {} vertices have no texture coordinate; (0, 0) is used",
                                              file_.mesh.name, corners_without_uv_));
+    if (!colours_.empty()) {
+        colours_.resize(positions_.size(), Eigen::Vector3f::Ones());
+        MeshAttribute colour{"vertex_color", false, 3, {}};
+        for (const std::size_t position : source_)
+            for (const float channel : colours_[position])
+                colour.values.push_back(static_cast<float>(spectral::srgb_decode(channel)));
+        file_.mesh.attributes.push_back(std::move(colour));
+    }
     finish_mesh(file_, {where_.file});
 }
 

@@ -8,7 +8,9 @@
 
 #include "patina/core/files.h"
 #include "patina/io/located_text.h"
+#include "patina/io/mesh_attributes.h"
 #include "patina/io/mesh_file.h"
+#include "patina/spectral/colorimetry.h"
 
 namespace patina::io {
 
@@ -173,6 +175,35 @@ Header read_header(PlyCursor& cursor) {
     return header;
 }
 
+// Where a property of an element goes among the attributes of the mesh: the first of their columns, and of each channel
+// the property.
+struct AttributeSlot {
+    std::size_t attribute = 0;
+    std::vector<std::size_t> columns;
+    bool colour = false;
+    std::vector<double> largest;  // of an integer of each column's type, 1 of a real number
+};
+
+// Integers stand for 0 .. 1, as Mitsuba has them.
+double largest_of(Scalar type) {
+    switch (type) {
+        case Scalar::i8:
+            return 127;
+        case Scalar::u8:
+            return 255;
+        case Scalar::i16:
+            return 32767;
+        case Scalar::u16:
+            return 65535;
+        case Scalar::i32:
+            return 2147483647.0;
+        case Scalar::u32:
+            return 4294967295.0;
+        default:
+            return 1;
+    }
+}
+
 class PlyReader {
   public:
     PlyReader(std::string_view text, const std::string& name) : cursor_(text, name) { file_.mesh.name = name; }
@@ -204,6 +235,9 @@ class PlyReader {
     void skip(const ElementKind& element);
     std::uint64_t list_size(const Property& property);
     void add_polygon(const std::vector<double>& corners);
+    std::vector<AttributeSlot> attribute_slots(const ElementKind& element, std::vector<bool> taken,
+                                               const std::string& prefix);
+    void store_attributes(const std::vector<double>& values, const std::vector<AttributeSlot>& slots);
 
     PlyCursor cursor_;
     MeshFile file_;
@@ -228,6 +262,10 @@ void PlyReader::read_vertices(const ElementKind& element) {
     if (!(present[0] && present[1] && present[2]))
         throw input_error(element.where, "vertices need properties x, y and z");
     const bool normals = present[3] && present[4] && present[5], uvs = present[6] && present[7];
+    std::vector<bool> taken;
+    for (const int slot : slots) taken.push_back(slot >= 0);
+    const std::vector<AttributeSlot> attributes = attribute_slots(element, std::move(taken), "vertex_");
+    std::vector<double> row(slots.size());
 
     for (std::uint64_t i = 0; i < element.count; ++i) {
         std::array<float, 8> values{};
@@ -237,11 +275,13 @@ void PlyReader::read_vertices(const ElementKind& element) {
             for (std::uint64_t item = 0; item < count; ++item) {
                 const double value = cursor_.number(property.type);
                 if (slots[p] >= 0) values[slots[p]] = static_cast<float>(value);
+                row[p] = value;
             }
         }
         file_.mesh.positions.emplace_back(values[0], values[1], values[2]);
         if (normals) file_.mesh.normals.emplace_back(values[3], values[4], values[5]);
         if (uvs) file_.mesh.uvs.emplace_back(values[6], values[7]);
+        store_attributes(row, attributes);
     }
 }
 
@@ -251,9 +291,14 @@ void PlyReader::read_faces(const ElementKind& element) {
     for (const Property& property : element.properties)
         found |= property.list && (property.name == "vertex_indices" || property.name == "vertex_index");
     if (!found) throw input_error(element.where, "faces need a list property vertex_indices");
+    const std::vector<AttributeSlot> attributes =
+        attribute_slots(element, std::vector<bool>(element.properties.size()), "face_");
+    std::vector<double> row(element.properties.size());
 
     for (std::uint64_t i = 0; i < element.count; ++i) {
-        for (const Property& property : element.properties) {
+        const std::size_t triangles_before = file_.mesh.triangles.size();
+        for (std::size_t p = 0; p < row.size(); ++p) {
+            const Property& property = element.properties[p];
             const bool indices =
                 property.list && (property.name == "vertex_indices" || property.name == "vertex_index");
             const std::uint64_t count = property.list ? list_size(property) : 1;
@@ -264,9 +309,11 @@ void PlyReader::read_faces(const ElementKind& element) {
             for (std::uint64_t item = 0; item < count; ++item) {
                 const double value = cursor_.number(property.type);
                 if (indices) corners.push_back(value);
+                row[p] = value;
             }
             if (indices) add_polygon(corners);
         }
+        for (std::size_t t = triangles_before; t < file_.mesh.triangles.size(); ++t) store_attributes(row, attributes);
     }
 }
 
@@ -280,6 +327,33 @@ void PlyReader::add_polygon(const std::vector<double>& corners) {
     }
     for (std::size_t i = 2; i < indices.size(); ++i)
         file_.mesh.triangles.push_back({indices[0], indices[i - 1], indices[i]});
+}
+
+std::vector<AttributeSlot> PlyReader::attribute_slots(const ElementKind& element, std::vector<bool> taken,
+                                                      const std::string& prefix) {
+    std::vector<std::string> names;
+    for (std::size_t p = 0; p < taken.size(); ++p)
+        names.push_back(taken[p] || element.properties[p].list ? std::string() : element.properties[p].name);
+    std::vector<AttributeSlot> slots;
+    for (const AttributeColumns& group : group_attributes(names, prefix)) {
+        AttributeSlot slot{file_.mesh.attributes.size(), group.columns, group.colour, {}};
+        for (const std::size_t column : group.columns)
+            slot.largest.push_back(largest_of(element.properties[column].type));
+        slots.push_back(std::move(slot));
+        file_.mesh.attributes.push_back({group.name, prefix == "face_", static_cast<int>(group.columns.size()), {}});
+    }
+    return slots;
+}
+
+void PlyReader::store_attributes(const std::vector<double>& values, const std::vector<AttributeSlot>& slots) {
+    for (const AttributeSlot& slot : slots)
+        for (std::size_t channel = 0; channel < slot.columns.size(); ++channel) {
+            const double share = values[slot.columns[channel]] / slot.largest[channel];
+            // Whole numbers of a colour are sRGB's.
+            const bool encoded = slot.colour && slot.largest[channel] != 1;
+            file_.mesh.attributes[slot.attribute].values.push_back(
+                static_cast<float>(encoded ? spectral::srgb_decode(share) : share));
+        }
 }
 
 std::uint64_t PlyReader::list_size(const Property& property) {

@@ -101,7 +101,7 @@ render::SceneResources scene_resources(std::vector<std::string>& warnings, const
                                 [&] { return std::make_shared<const brdf::MerlTable>(io::read_table_merl(path)); });
     };
     resources.load_mesh = [meshes, &warnings](const std::string& path, const std::string& kind) {
-        return meshes->get(path, [&] {
+        return meshes->get(path + "|" + kind, [&] {
             io::MeshFile file = io::read_mesh(path, kind);
             warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
             return std::make_shared<const TriangleMesh>(std::move(file.mesh));

@@ -19,6 +19,7 @@
 #include "patina/render/mueller_packet.h"
 #include "patina/render/render.h"
 #include "patina/render/spectrum.h"
+#include "patina/render/surface_uv.h"
 
 namespace patina::render {
 
@@ -27,10 +28,19 @@ struct Bsdf;
 // Where on a surface, and for which wavelengths, a model is asked.
 struct ShadingPoint {
     const Wavelengths* wavelengths = nullptr;
-    Vec2 uv = Vec2::Zero();
+    SurfaceUv uv;
     const Bsdf* set = nullptr;  // the scene's models, for those that are made of others
     // evaluate(), and sample() of a paint, need not fill but the first column of a general matrix.
     bool unpolarized_light = false;
+    // sample() of a smooth interface takes each of its two ways with at least this probability.
+    float least_share = 0;
+
+    // With which probability one that reflects this share of the light is to reflect the path.
+    float chance_of_reflection(float reflectance) const {
+        constexpr float no_way = 1e-4f;
+        if (reflectance < no_way || reflectance > 1 - no_way) return reflectance;
+        return std::clamp(reflectance, least_share, 1 - least_share);
+    }
 };
 
 struct BsdfSample {

@@ -38,7 +38,7 @@ StokesPacket far_away(const Scene& scene, const Sensor::CameraRay& camera, const
         const Emitter& e = scene.lights.all()[emitter];
         if (const auto* point = std::get_if<PointEmitter>(&e)) add(emitter, point->position, point->intensity.at(w));
         if (const auto* spot = std::get_if<SpotEmitter>(&e))
-            add(emitter, spot->position, spot->intensity.at(w) * spot->falloff(towards));
+            add(emitter, spot->position, spot->intensity_along(w, towards));
     }
     return sum;
 }

@@ -14,13 +14,14 @@ struct Start {
 
     bool operator()(const AreaEmitter& e) const {
         const Shape& shape = geometry.shapes[e.shape];
-        Vec2 uv;
-        point_of_shape(geometry, shape, u_origin, out.position, out.normal, uv);
+        float density = 1;
+        const Vec2 place = e.table ? e.table->sample(u_origin, density) : u_origin;
+        point_of_shape(geometry, shape, place, out.position, out.normal, out.uv);
         const Vec3 local = cosine_hemisphere(u_ray);
         out.direction = Frame(out.normal).to_world(local);
-        out.origin_pdf = 1 / shape.area;
+        out.origin_pdf = density / shape.area;
         out.ray_pdf = local.z() * inv_pi_f;
-        out.power = e.radiance.at(w, uv) * (pi_f * shape.area);
+        out.power = e.radiance.at(w, out.uv) * (pi_f * shape.area / density);
         // Start on the side it leaves to.
         const float reach = std::max(out.position.cwiseAbs().maxCoeff(), 0.1f * geometry.radius());
         out.position += out.normal * (2e-6f * reach);
@@ -42,7 +43,7 @@ struct Start {
         out.direction = Frame(e.axis).to_world({sin * std::cos(phi), sin * std::sin(phi), cos});
         out.origin_pdf = 1;
         out.ray_pdf = 1 / solid_angle;
-        out.power = e.intensity.at(w) * (e.falloff(out.direction) * solid_angle);
+        out.power = e.intensity_along(w, out.direction) * solid_angle;
         return out.delta_origin = true;
     }
     bool operator()(const DirectionalEmitter& e) const {
@@ -96,9 +97,9 @@ bool Emission::sample(const Wavelengths& w, float u, const Vec2& u_origin, const
     return largest(ray.power) > 0;
 }
 
-void Emission::surface_pdfs(int emitter, float cos, float& origin_pdf, float& ray_pdf) const {
+void Emission::surface_pdfs(int emitter, float cos, float area_density, float& origin_pdf, float& ray_pdf) const {
     const auto& area = std::get<AreaEmitter>(lights_.all()[emitter]);
-    origin_pdf = choice_.probability(emitter) / geometry_.shapes[area.shape].area;
+    origin_pdf = choice_.probability(emitter) * area_density / geometry_.shapes[area.shape].area;
     ray_pdf = std::max(cos, 0.0f) * inv_pi_f;
 }
 

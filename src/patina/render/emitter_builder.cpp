@@ -6,6 +6,7 @@
 #include "patina/core/error.h"
 #include "patina/render/emitters.h"
 #include "patina/render/plugins.h"
+#include "patina/render/sensor.h"
 
 namespace patina::render {
 
@@ -90,7 +91,17 @@ EnvironmentEmitter environment(const Properties& node, const SceneResources& res
     return e;
 }
 
-SpotEmitter spot(const Properties& node) {
+// The axes of a spot or projector, which may be scaled but not sheared.
+Slide slide_of(const Properties& node) {
+    const Eigen::Matrix3d m = node.transform("to_world").block<3, 3>(0, 0);
+    Slide slide;
+    for (int axis = 0; axis < 3; ++axis) slide.to_local.row(axis) = m.col(axis).normalized().cast<float>().transpose();
+    if (!slide.to_local.allFinite() || std::abs(std::abs(slide.to_local.determinant()) - 1) > 1e-3f)
+        throw input_error(node.location_of("to_world"), "the axes of the light are not perpendicular");
+    return slide;
+}
+
+SpotEmitter spot(const Properties& node, const SceneResources& resources) {
     SpotEmitter e;
     const Eigen::Matrix4d m = node.transform("to_world");
     e.position = place(m.block<3, 1>(0, 3), node.location_of("to_world"));
@@ -104,6 +115,37 @@ SpotEmitter spot(const Properties& node) {
                           "keep 0 < beam_width <= cutoff_angle <= 180");
     e.cutoff_rad = static_cast<float>(radians(cutoff_deg));
     e.beam_width_rad = static_cast<float>(radians(beam_deg));
+    if (const auto picture = node.named_child("texture")) {
+        if (!(cutoff_deg < 89))
+            throw input_error(node.location_of("cutoff_angle"), "the cone is too wide for a texture",
+                              fmt::format("it is {} degrees", cutoff_deg), "keep it below 89");
+        Slide slide = slide_of(node);
+        slide.tan_u = slide.tan_v = std::tan(e.cutoff_rad);
+        slide.picture = Texture::reflectance(node, "texture", 1.0f, resources);
+        e.slide = std::make_shared<const Slide>(std::move(slide));
+    }
+    return e;
+}
+
+// The pixel a direction falls on is that of a perspective camera in its place: u to the right of who looks along +z, v
+// downwards.
+SpotEmitter projector(const Properties& node, const SceneResources& resources) {
+    SpotEmitter e;
+    const Eigen::Matrix4d m = node.transform("to_world");
+    e.position = place(m.block<3, 1>(0, 3), node.location_of("to_world"));
+    e.axis = unit(m.block<3, 1>(0, 2), node.location_of("to_world"));
+    const double scale = node.number("scale", 1.0);
+    if (!(scale >= 0) || !(scale < 1e12))
+        throw input_error(node.location_of("scale"), "scale must be >= 0", fmt::format("it is {}", scale));
+    e.intensity = Spectrum(static_cast<float>(scale));
+    Slide slide = slide_of(node);
+    slide.picture = Texture::emission(node, "irradiance", 1.0f, resources);
+    slide.projects = true;
+    const double aspect = slide.picture.aspect(), tangent = tangent_along_x(node, aspect);
+    slide.tan_u = static_cast<float>(-tangent);
+    slide.tan_v = static_cast<float>(-tangent / aspect);
+    e.cutoff_rad = e.beam_width_rad = std::atan(std::hypot(slide.tan_u, slide.tan_v)) + 1e-4f;
+    e.slide = std::make_shared<const Slide>(std::move(slide));
     return e;
 }
 
@@ -136,8 +178,10 @@ Emitter build_emitter(const Properties& node, const SceneResources& resources) {
         emitter = ConstantEmitter{emission(node, "radiance")};
     } else if (node.type == "envmap") {
         emitter = environment(node, resources);
+    } else if (node.type == "projector") {
+        emitter = projector(node, resources);
     } else {
-        emitter = spot(node);
+        emitter = spot(node, resources);
     }
     expect_known_properties(node);
     return emitter;

@@ -19,7 +19,8 @@ struct PowerOf {
         return pi_f * sqr(geometry.radius()) * e.irradiance.average();
     }
     float operator()(const SpotEmitter& e) const {
-        return 2 * pi_f * (1 - std::cos(0.5f * (e.cutoff_rad + e.beam_width_rad))) * e.intensity.average();
+        const float solid_angle = 2 * pi_f * (1 - std::cos(0.5f * (e.cutoff_rad + e.beam_width_rad)));
+        return solid_angle * e.intensity.average() * (e.slide ? e.slide->mean_factor() : 1.0f);
     }
     float operator()(const ConstantEmitter& e) const {
         return sqr(2 * pi_f * geometry.radius()) * e.radiance.average();
@@ -79,20 +80,19 @@ struct Draw {
 
     bool operator()(const AreaEmitter& e) const {
         ShapeSample at;
-        if (!geometry.sample_shape(e.shape, from, u, at)) return false;
-        const Vec3 d = at.position - from;
-        out.distance = d.norm();
-        out.direction = d * (1 / out.distance);
-        if (out.direction.dot(at.normal) >= 0) return false;
+        const Vec2 place = e.table ? e.table->sample(u, out.area_density) : u;
+        if (!geometry.sample_shape(e.shape, from, place, at)) return false;
+        out.distance = at.distance;
+        out.direction = at.direction;
         out.normal = at.normal;
-        out.pdf = at.pdf;
+        out.pdf = at.pdf * out.area_density;
         out.radiance = e.radiance.at(w, at.uv);
         return true;
     }
     bool operator()(const PointEmitter& e) const { return towards(e.position, e.intensity.at(w)); }
     bool operator()(const SpotEmitter& e) const {
-        const float falloff = e.falloff((from - e.position).normalized());
-        return falloff > 0 && towards(e.position, falloff * e.intensity.at(w));
+        const Float4 intensity = e.intensity_along(w, (from - e.position).normalized());
+        return largest(intensity) > 0 && towards(e.position, intensity);
     }
     bool operator()(const DirectionalEmitter& e) const {
         out.direction = -e.direction;
@@ -130,6 +130,23 @@ float SpotEmitter::falloff(const Vec3& direction) const {
     if (cos <= std::cos(cutoff_rad)) return 0;
     if (cos >= std::cos(beam_width_rad)) return 1;
     return (cutoff_rad - std::acos(cos)) / (cutoff_rad - beam_width_rad);
+}
+
+Float4 Slide::at(const Wavelengths& w, const Vec3& direction) const {
+    const Vec3 local = to_local * direction;
+    if (local.z() <= 0) return splat(0);
+    const Vec2 uv(0.5f + 0.5f * local.x() / (local.z() * tan_u), 0.5f + 0.5f * local.y() / (local.z() * tan_v));
+    if (!projects) return picture.at(w, uv);
+    if (uv.minCoeff() < 0 || uv.maxCoeff() > 1) return splat(0);
+    // I = E / cos^3 for the irradiance E on a plane at distance 1.
+    return picture.at(w, uv) * (pi_f / (local.z() * local.z() * local.z()));
+}
+
+float Slide::mean_factor() const {
+    if (!projects) return picture.average();
+    // Power pi E A over the solid angle of the cone about the slide's corners.
+    const float corner = 1 / std::sqrt(1 + sqr(tan_u) + sqr(tan_v));
+    return pi_f * picture.average() * 4 * std::abs(tan_u * tan_v) / (2 * pi_f * (1 - corner));
 }
 
 float emitted_power(const Emitter& emitter, const Geometry& geometry) {
@@ -198,6 +215,7 @@ bool Lights::sample(const Geometry& geometry, const Vec3& from, const Wavelength
 bool Lights::sample_emitter(int emitter, const Geometry& geometry, const Vec3& from, const Wavelengths& w,
                             const Vec2& u2, LightSample& sample) const {
     sample.delta = false;
+    sample.area_density = 1;
     sample.distance = INFINITY;
     sample.emitter = emitter;
     return std::visit(Draw{geometry, from, w, u2, sample}, emitters_[emitter]);

@@ -8,6 +8,7 @@
 #include "patina/render/bsdf.h"
 #include "patina/render/emitter_polarization.h"
 #include "patina/render/geometry.h"
+#include "patina/render/lamp_table.h"
 #include "patina/render/lamp_tree.h"
 #include "patina/render/spectrum.h"
 #include "patina/render/texture.h"
@@ -23,13 +24,15 @@ struct LightSample {
     Float4 radiance;  // radiance, or the irradiance on a plane across the direction for a delta light
     int emitter = -1;
     Vec3 normal = Vec3::Zero();  // of a surface that shines
+    float area_density = 1;      // of the place on it, where 1 is uniform
 };
 
 // A surface that shines from its outside, `area`: the same radiance into every direction (Lambert's law), of each place
-// its own where a texture says so. Points are drawn uniformly over the area.
+// its own where a texture says so. Points are drawn uniformly over the area, or where the table says it is bright.
 struct AreaEmitter {
     int shape = -1;
     Texture radiance;
+    std::shared_ptr<const LampTable> table;  // null: uniformly
 };
 
 // Intensity I into every direction from a point, `point`: irradiance I cos / r^2.
@@ -44,14 +47,34 @@ struct DirectionalEmitter {
     Spectrum irradiance;
 };
 
+// A picture in the way of a spot's light, or the slide of a projector.
+struct Slide {
+    Eigen::Matrix3f to_local;    // from the world; light travels along +z
+    float tan_u = 1, tan_v = 1;  // half its width and height at distance 1, along the spot's x and y; < 0 mirrored
+    Texture picture;
+    // Of a projector: nothing passes beside the picture, whose colours are irradiance / pi on a plane across the axis
+    // at distance 1 (Mitsuba's). Of a spot they are factors on its intensity.
+    bool projects = false;
+
+    Float4 at(const Wavelengths& w, const Vec3& direction) const;  // of travel
+    float mean_factor() const;                                     // over the cone, for choosing between lights
+};
+
 // A cone of light, `spot`: intensity I inside beam_width, falling linearly in angle to 0 at the cutoff (Mitsuba's
-// profile).
+// profile). A `projector` is one that is wide enough for its slide.
 struct SpotEmitter {
     Vec3 position, axis;
     Spectrum intensity;
     float cutoff_rad = 0, beam_width_rad = 0;
+    std::shared_ptr<const Slide> slide;  // null: none
 
     float falloff(const Vec3& direction) const;  // direction of travel, unit
+    Float4 intensity_along(const Wavelengths& w, const Vec3& direction) const {
+        const float share = falloff(direction);
+        if (share <= 0) return splat(0);
+        const Float4 plain = share * intensity.at(w);
+        return slide ? plain * slide->at(w, direction) : plain;
+    }
 };
 
 // The same radiance from everywhere, `constant`. Found by the paths that leave the scene, never sampled: no surface
@@ -109,7 +132,12 @@ class Lights {
     // Density with which sample() finds a point of an emitting surface, per solid angle at `from`.
     float surface_pdf(int emitter, const Geometry& geometry, const Hit& hit, const SurfacePoint& at,
                       const Vec3& from) const {
-        return choice_probability(emitter, from) * geometry.shape_pdf(hit, at, from);
+        return choice_probability(emitter, from) * area_density(emitter, at.uv) * geometry.shape_pdf(hit, at, from);
+    }
+    // Density of the places of a surface that light is looked for at, where 1 is uniform.
+    float area_density(int emitter, const SurfaceUv& uv) const {
+        const auto& table = std::get<AreaEmitter>(emitters_[emitter]).table;
+        return table ? table->density(uv) : 1.0f;
     }
     // Probability with which sample() chooses this emitter for a point.
     float choice_probability(int emitter, const Vec3& from) const {
@@ -129,6 +157,8 @@ class Lights {
         }
     }
     bool any_sampled() const { return !sampled_.empty(); }
+    // Does sample() need its first number?
+    bool must_choose() const { return sampled_.size() > 1 || !lamps_.empty(); }
 
     bool any_polarized() const { return any_polarized_; }
     bool polarized(int emitter) const { return any_polarized_ && states_[emitter].polarized(); }

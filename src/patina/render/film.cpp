@@ -158,6 +158,11 @@ FilmSettings build_film(const Properties& node) {
     if (const auto filter = node.only_child("rfilter")) film.filter = PixelFilter(*filter);
     for (const char* name : {"file_format", "pixel_format", "component_format"}) node.string(name, "");
     node.boolean("banner", false);
+    node.boolean("compensate", false);
+    for (const Properties::Entry& entry : node.entries)
+        if (std::holds_alternative<SpectrumSpec>(entry.value))
+            throw input_error(entry.where, fmt::format("the film has no sensitivity \"{}\"", entry.name),
+                              "every picture has 16 spectral bands of 25 nm", "leave it out");
     node.boolean("sample_border", false);
     film.bin_edges_nm = FilmSettings::default_bins();
     expect_known_properties(node);

@@ -110,7 +110,7 @@ class Film {
 
     // Is `samples` a count of samples of a pixel after which a batch ends? There are up to `most_batches` of equal
     // size, then they are joined two by two.
-    static bool batch_ends(int samples) { return samples % batch_size(samples) == 0; }
+    static bool batch_ends(int samples) { return (samples & (batch_size(samples) - 1)) == 0; }  // a power of two
     // Ends a batch, when so many samples are done: the spread of the batches' mean luminances tells the variance,
     // whatever light came from other pixels' samples, and sees most of what stratified samples gain.
     void end_batch(std::size_t pixel, int samples);

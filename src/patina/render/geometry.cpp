@@ -1,5 +1,7 @@
 #include "patina/render/geometry.h"
 
+#include "patina/render/plane_uv.h"
+
 namespace patina::render {
 
 namespace {
@@ -18,6 +20,16 @@ void grow(Eigen::AlignedBox3f& box, const AnalyticShape& s) {
     }
     for (float u : {-1.0f, 1.0f})
         for (float v : {-1.0f, 1.0f}) box.extend(s.o + u * s.a + v * s.b);
+}
+
+// Completes a sample that was drawn uniformly over `area` with its normal; false: only its back is seen.
+bool shows_its_front(const Vec3& to_point, float area, ShapeSample& sample) {
+    const float distance2 = to_point.squaredNorm();
+    sample.distance = std::sqrt(distance2);
+    sample.direction = to_point * (1 / sample.distance);
+    const float cos = -sample.direction.dot(sample.normal);
+    sample.pdf = cos > 0 ? distance2 / (cos * area) : 0.0f;
+    return sample.pdf > 0 && std::isfinite(sample.pdf);
 }
 
 }  // namespace
@@ -120,6 +132,12 @@ void Geometry::surface_of_analytic(const AnalyticShape& s, const Ray& ray, const
         point.position = s.o + hit.u * s.a + hit.v * s.b;
         point.frame = s.frame;
         point.geometric_normal = s.frame.n;
+        if (s.kind == AnalyticShape::Kind::disk) {
+            point.uv = uv_of_plane(s, hit.u, hit.v);
+            // The tangent is along u, the radius.
+            point.frame = Frame(s.frame.n, hit.u * s.a + hit.v * s.b);
+            return;
+        }
         point.uv = {0.5f * (hit.u + 1), 0.5f * (hit.v + 1)};
         return;
     }
@@ -156,15 +174,16 @@ void Geometry::surface_of_triangle(const Hit& hit, SurfacePoint& point) const {
         // The file's normals say which side is outside, whatever the order of the corners.
         if (shading.dot(point.geometric_normal) < 0) point.geometric_normal = -point.geometric_normal;
     }
-    point.uv = {u, v};
+    Vec2 uv(u, v);
     Vec3 tangent = Vec3::Zero();
     if (!mesh.uvs.empty()) {
         const Vec2 &a = mesh.uvs[i0], &b = mesh.uvs[i1], &c = mesh.uvs[i2];
-        point.uv = w * a + u * b + v * c;
+        uv = w * a + u * b + v * c;
         const Vec2 d1 = b - a, d2 = c - a;
         const float det = d1.x() * d2.y() - d1.y() * d2.x();
         if (det != 0) tangent = (e1 * d2.y() - e2 * d1.y()) / det;
     }
+    point.uv = {uv, hit.primitive, u, v};
     if (m.flipped) {
         shading = -shading;
         point.geometric_normal = -point.geometric_normal;
@@ -173,46 +192,42 @@ void Geometry::surface_of_triangle(const Hit& hit, SurfacePoint& point) const {
 }
 
 bool Geometry::sample_sphere(const AnalyticShape& sphere, const Vec3& from, const Vec2& u, ShapeSample& sample) const {
-    const float outside = sphere.flipped ? -1.0f : 1.0f;
     const Vec3 to_centre = sphere.o - from;
     const float distance2 = to_centre.squaredNorm(), radius2 = sphere.radius * sphere.radius;
     if (distance2 <= radius2 * 1.0001f) {
         // From inside: uniform over the area.
         sample.normal = uniform_sphere(u);
-        sample.position = sphere.o + sphere.radius * sample.normal;
         if (needs_uv) sample.uv = sphere.spherical(sample.normal);
-        sample.normal *= outside;
-        const Vec3 d = sample.position - from;
-        const float cos = std::abs(d.dot(sample.normal));
-        sample.pdf = cos > 0 ? d.squaredNorm() * d.norm() / (cos * sphere.area) : 0.0f;
-        return sample.pdf > 0;
+        const Vec3 to_point = to_centre + sphere.radius * sample.normal;
+        if (sphere.flipped) sample.normal = -sample.normal;
+        return shows_its_front(to_point, sphere.area, sample);
     }
     // From outside: uniform over the cone the sphere fills.
+    if (sphere.flipped) return false;
     const float sin2_max = radius2 / distance2;
     const float one_minus_cos_max = sin2_max / (1 + safe_sqrt(1 - sin2_max));
     const float one_minus_cos = u.x() * one_minus_cos_max, cos = 1 - one_minus_cos;
     const float sin2 = one_minus_cos * (2 - one_minus_cos), phi = 2 * pi_f * u.y();
     const Frame frame(to_centre / std::sqrt(distance2));
-    const Vec3 direction = frame.to_world({safe_sqrt(sin2) * std::cos(phi), safe_sqrt(sin2) * std::sin(phi), cos});
-    const float along = std::sqrt(distance2) * cos - safe_sqrt(radius2 - distance2 * sin2);
-    sample.normal = (from + along * direction - sphere.o).normalized();
-    sample.position = sphere.o + sphere.radius * sample.normal;
+    sample.direction = frame.to_world({safe_sqrt(sin2) * std::cos(phi), safe_sqrt(sin2) * std::sin(phi), cos});
+    sample.distance = std::sqrt(distance2) * cos - safe_sqrt(radius2 - distance2 * sin2);
+    sample.normal = (sample.distance * sample.direction - to_centre).normalized();
     if (needs_uv) sample.uv = sphere.spherical(sample.normal);
-    sample.normal *= outside;
     sample.pdf = 1 / (2 * pi_f * one_minus_cos_max);
     return true;
 }
 
 bool Geometry::sample_shape(int index, const Vec3& from, const Vec2& u, ShapeSample& sample) const {
     const Shape& shape = shapes[index];
+    Vec3 position;
     if (shape.is_mesh) {
         const MeshShape& m = meshes[shape.first];
         const auto choice = m.by_area.sample(u.x());
         const auto& [i0, i1, i2] = m.mesh->triangles[choice.index];
         const Vec3 &p0 = m.mesh->positions[i0], &p1 = m.mesh->positions[i1], &p2 = m.mesh->positions[i2];
         const float root = std::sqrt(choice.remainder), b1 = root * (1 - u.y()), b2 = root * u.y();
-        sample.position = (1 - b1 - b2) * p0 + b1 * p1 + b2 * p2;
-        sample.uv = m.mesh->uv_at(choice.index, b1, b2);
+        position = (1 - b1 - b2) * p0 + b1 * p1 + b2 * p2;
+        sample.uv = {m.mesh->uv_at(choice.index, b1, b2), choice.index, b1, b2};
         sample.normal = (p1 - p0).cross(p2 - p0).normalized();
         if (!m.mesh->normals.empty() && sample.normal.dot(m.mesh->normals[i0]) < 0) sample.normal = -sample.normal;
         if (m.flipped) sample.normal = -sample.normal;
@@ -229,14 +244,11 @@ bool Geometry::sample_shape(int index, const Vec3& from, const Vec2& u, ShapeSam
         if (s.kind == AnalyticShape::Kind::sphere) return sample_sphere(s, from, u, sample);
         const Vec2 p =
             s.kind == AnalyticShape::Kind::disk ? concentric_disk({rest, u.y()}) : Vec2(2 * rest - 1, 2 * u.y() - 1);
-        sample.position = s.o + p.x() * s.a + p.y() * s.b;
-        sample.uv = {0.5f * (p.x() + 1), 0.5f * (p.y() + 1)};
+        position = s.o + p.x() * s.a + p.y() * s.b;
+        if (needs_uv) sample.uv = uv_of_plane(s, p.x(), p.y());
         sample.normal = s.flipped ? Vec3(-s.n) : s.n;
     }
-    const Vec3 d = from - sample.position;
-    const float distance2 = d.squaredNorm(), cos = d.dot(sample.normal);
-    sample.pdf = cos > 0 ? distance2 * std::sqrt(distance2) / (cos * shape.area) : 0.0f;
-    return sample.pdf > 0 && std::isfinite(sample.pdf);
+    return shows_its_front(position - from, shape.area, sample);
 }
 
 float Geometry::shape_pdf(const Hit& hit, const SurfacePoint& at, const Vec3& from) const {

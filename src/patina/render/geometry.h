@@ -12,6 +12,7 @@
 #include "patina/render/instances.h"
 #include "patina/render/sampling.h"
 #include "patina/render/shapes.h"
+#include "patina/render/surface_uv.h"
 
 namespace patina::render {
 
@@ -40,7 +41,7 @@ struct MeshShape {
 struct SurfacePoint {
     Vec3 position, geometric_normal;
     Frame frame;  // shading normal, tangent along u
-    Vec2 uv = Vec2::Zero();
+    SurfaceUv uv;
     int shape = -1;
     float offset = 0;  // how far a ray must start from the surface not to meet it again
 
@@ -52,8 +53,9 @@ struct SurfacePoint {
 
 // A point drawn on a shape as seen from another.
 struct ShapeSample {
-    Vec3 position, normal;
-    Vec2 uv = Vec2::Zero();
+    Vec3 normal, direction;  // of the shape there; from the other point to it
+    float distance = 0;
+    SurfaceUv uv;
     float pdf = 0;  // per solid angle at the other point
 };
 

@@ -37,15 +37,16 @@ Phase build_phase(const Properties& node, const PhaseBuilder& builder) {
 
 // Extinction and albedo as sigma_t and albedo, or as sigma_a and sigma_s.
 void read_coefficients(const Properties& node, Medium& medium) {
-    const bool by_parts = node.has("sigma_a") || node.has("sigma_s");
-    if (by_parts && (node.has("sigma_t") || node.has("albedo")))
+    const auto given = [&](const char* name) { return given_spectrum(node, name).has_value(); };
+    const bool by_parts = given("sigma_a") || given("sigma_s");
+    if (by_parts && (given("sigma_t") || given("albedo")))
         throw input_error(node.where, "a medium is given by sigma_t and albedo or by sigma_a and sigma_s",
                           "both are given", "leave one pair out");
     if (!by_parts) {
         medium.extinction = coefficient(node, "sigma_t", 1);
         medium.albedo = Spectrum(0.75f);
-        if (const auto albedo = node.spectrum("albedo"))
-            medium.albedo = reflectance_table(*albedo, node.location_of("albedo"));
+        if (const auto albedo = given_spectrum(node, "albedo"))
+            medium.albedo = reflectance_table(albedo->spec, albedo->where);
         return;
     }
     const Spectrum absorption = coefficient(node, "sigma_a", 0);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "patina/core/error.h"
+#include "patina/render/plugins.h"
 
 namespace patina::render {
 
@@ -59,12 +60,24 @@ LayerInScene layer_in_scene(const Properties& node, const SceneResources& resour
     return result;
 }
 
+std::optional<GivenSpectrum> given_spectrum(const Properties& node, const char* name) {
+    const auto volume = node.named_child(name);
+    if (volume) expect_plugin(*volume);
+    const Properties& holder = volume ? *volume : node;
+    const char* key = volume ? "value" : name;
+    auto spec = holder.spectrum(key);
+    if (volume) expect_known_properties(*volume);
+    if (!spec && volume) spec = SpectrumSpec{SpectrumSpec::Kind::uniform, {}, {1.0}};
+    if (!spec) return std::nullopt;
+    return GivenSpectrum{*spec, holder.location_of(key)};
+}
+
 Spectrum coefficient(const Properties& node, const char* name, float fallback) {
-    const auto spec = node.spectrum(name);
-    if (!spec) return Spectrum(fallback);
-    const Spectrum table = property_table(*spec, node.location_of(name));
+    const auto given = given_spectrum(node, name);
+    if (!given) return Spectrum(fallback);
+    const Spectrum table = property_table(given->spec, given->where);
     if (!(table.smallest() >= 0) || !std::isfinite(table.largest()))
-        throw input_error(node.location_of(name), fmt::format("{} must not be negative", name),
+        throw input_error(given->where, fmt::format("{} must not be negative", name),
                           fmt::format("it goes from {} to {}", table.smallest(), table.largest()));
     return table;
 }

@@ -24,6 +24,14 @@ struct LayerInScene {
 LayerInScene layer_in_scene(const Properties& node, const SceneResources& resources,
                             std::map<std::string, std::string>& notes);
 
+// The spectrum `name` of a medium, or that of the child <volume type="constvolume" name="...">; none when neither is
+// given.
+struct GivenSpectrum {
+    SpectrumSpec spec;
+    SourceLocation where;
+};
+std::optional<GivenSpectrum> given_spectrum(const Properties& node, const char* name);
+
 // A coefficient per length, `name`, in 0 .. infinity, or the fallback.
 Spectrum coefficient(const Properties& node, const char* name, float fallback);
 double factor(const Properties& node, const char* name);  // >= 0, 1 by default

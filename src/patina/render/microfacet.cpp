@@ -62,7 +62,7 @@ MicrofacetField::MicrofacetField(MicrofacetKind kind, ScalarTexture alpha_u, Sca
     alpha_ = std::make_shared<const std::array<ScalarTexture, 2>>(std::array{std::move(alpha_u), std::move(alpha_v)});
 }
 
-Microfacets MicrofacetField::varied(const Vec2& uv) const {
+Microfacets MicrofacetField::varied(const SurfaceUv& uv) const {
     return {base_.kind, std::max((*alpha_)[0].at(uv), smallest_alpha), std::max((*alpha_)[1].at(uv), smallest_alpha)};
 }
 

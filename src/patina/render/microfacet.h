@@ -76,10 +76,10 @@ class MicrofacetField {
     MicrofacetField(const Microfacets& everywhere) : base_(everywhere) {}
     MicrofacetField(MicrofacetKind kind, ScalarTexture alpha_u, ScalarTexture alpha_v);
 
-    Microfacets at(const Vec2& uv) const { return alpha_ ? varied(uv) : base_; }
+    Microfacets at(const SurfaceUv& uv) const { return alpha_ ? varied(uv) : base_; }
 
   private:
-    Microfacets varied(const Vec2& uv) const;
+    Microfacets varied(const SurfaceUv& uv) const;
 
     Microfacets base_;
     std::shared_ptr<const std::array<ScalarTexture, 2>> alpha_;  // null: the same everywhere

@@ -19,6 +19,7 @@ std::uint16_t to_half(float value) {
     const auto half = static_cast<_Float16>(value);
     return std::bit_cast<std::uint16_t>(half);
 }
+constexpr std::uint16_t half_sign = 0x8000;
 // One element of a Mueller matrix for four wavelengths: four halves.
 Float4 load_element(const std::uint16_t* p) {
 #if defined(__F16C__)
@@ -41,11 +42,6 @@ StokesPacket load_column(const std::uint16_t* p) {
 #else
     return make_stokes(load_element(p), load_element(p + 4), load_element(p + 8), load_element(p + 12));
 #endif
-}
-
-// The first row of a matrix whose columns stand beside each other from p on, for four wavelengths.
-StokesPacket load_first_row(const std::uint16_t* p) {
-    return make_stokes(load_element(p), load_element(p + 16), load_element(p + 32), load_element(p + 48));
 }
 
 // V changes its sign where light goes the other way.
@@ -121,6 +117,7 @@ PaintTable::PaintTable(const brdf::MuellerTable& table, const Size& size) : size
     specular_wavelengths_ = 4 * size_.intervals + 1;
     block_ = 64 * static_cast<std::size_t>(nodes_);
     tabulate_body(table);
+    gather_first_columns();
     tabulate_specular(table);
     tabulate_sampling();
 }
@@ -165,6 +162,23 @@ void PaintTable::tabulate_body(const brdf::MuellerTable& table) {
                     }
                 }
     });
+}
+
+void PaintTable::gather_first_columns() {
+    first_columns_.assign(first_node(size_.angles - 1, size_.angles - 1, size_.azimuths), 0);
+    for (int o = 0; o < size_.angles; ++o)
+        for (int i = 0; i < size_.angles; ++i)
+            for (int p = 0; p < size_.azimuths; ++p)
+                for (int place = 0; place < nodes_; ++place) {
+                    const std::uint16_t* matrix = &body_[node(std::min(o, i), std::max(o, i), p)] + 64 * place;
+                    std::uint16_t* column = &first_columns_[first_node(o, i, p)] + 16 * place;
+                    // Of the matrix for light that goes the other way it is the first row, V with the other sign.
+                    for (int row = 0; row < 4; ++row)
+                        for (int quarter = 0; quarter < 4; ++quarter)
+                            column[4 * row + quarter] = o <= i
+                                                            ? matrix[4 * row + quarter]
+                                                            : matrix[16 * row + quarter] ^ (row == 3 ? half_sign : 0);
+                }
 }
 
 void PaintTable::tabulate_specular(const brdf::MuellerTable& table) {
@@ -248,36 +262,43 @@ PaintTable::Place PaintTable::place(const Vec3& outgoing, const Vec3& incident) 
     return at;
 }
 
-template <int count>
-void PaintTable::interpolate(const Place& at, const WavelengthPlace& wavelength, StokesPacket* matrix) const {
+template <class Visit>
+void PaintTable::for_corners(const Place& at, const WavelengthPlace& wavelength, const Visit& visit) const {
     const Interval o(at.theta_o, size_.angles), i(at.theta_i, size_.angles), p(at.phi, size_.azimuths);
-    const int next = nodes_ > 1 ? 64 : 0;
-    StokesPacket sums[count]{}, reversed[count]{};
     for (int corner = 0; corner < 8; ++corner) {
-        const int a = o.lower + (corner & 1), b = i.lower + ((corner >> 1) & 1), at_phi = p.lower + (corner >> 2);
         const float weight = (corner & 1 ? o.weight : 1 - o.weight) * (corner & 2 ? i.weight : 1 - i.weight) *
                              (corner & 4 ? p.weight : 1 - p.weight);
-        const float high = weight * wavelength.weight, low = weight - high;
-        const std::uint16_t* place = &body_[node(std::min(a, b), std::max(a, b), at_phi)] + 64 * wavelength.lower;
-        if (count == 1 && a > b) {
-            reversed[0] += low * load_first_row(place);
-            reversed[0] += high * load_first_row(place + next);
-            continue;
-        }
-        StokesPacket* target = a > b ? reversed : sums;
-        for (int column = 0; column < count; ++column) {
+        const float high = weight * wavelength.weight;
+        visit(o.lower + (corner & 1), i.lower + ((corner >> 1) & 1), p.lower + (corner >> 2), weight - high, high);
+    }
+}
+
+StokesPacket PaintTable::first_column(const Place& at, const WavelengthPlace& wavelength) const {
+    const int next = nodes_ > 1 ? 16 : 0;
+    StokesPacket sum{};
+    for_corners(at, wavelength, [&](int o, int i, int p, float low, float high) {
+        const std::uint16_t* place = &first_columns_[first_node(o, i, p)] + 16 * wavelength.lower;
+        sum += low * load_column(place);
+        sum += high * load_column(place + next);
+    });
+    return sum;
+}
+
+void PaintTable::whole_matrix(const Place& at, const WavelengthPlace& wavelength, StokesPacket* columns) const {
+    const int next = nodes_ > 1 ? 64 : 0;
+    StokesPacket sums[4]{}, reversed[4]{};
+    bool any_reversed = false;
+    for_corners(at, wavelength, [&](int o, int i, int p, float low, float high) {
+        const std::uint16_t* place = &body_[node(std::min(o, i), std::max(o, i), p)] + 64 * wavelength.lower;
+        StokesPacket* target = o > i ? reversed : sums;
+        any_reversed |= o > i;
+        for (int column = 0; column < 4; ++column) {
             target[column] += low * load_column(place + 16 * column);
             target[column] += high * load_column(place + next + 16 * column);
         }
-    }
-    // Both ways add up in the same order, one product a statement so that each is contracted alike: the first column
-    // alone has the bits it has in the whole.
-    if constexpr (count == 1) {
-        sums[0] += reversed[0] * other_way;
-    } else if (o.lower + 1 > i.lower) {
-        add_reversed(reversed, sums);
-    }
-    for (int column = 0; column < count; ++column) matrix[column] = sums[column];
+    });
+    if (any_reversed) add_reversed(reversed, sums);
+    for (int column = 0; column < 4; ++column) columns[column] = sums[column];
 }
 
 void PaintTable::evaluate(const Wavelengths& w, const Vec3& outgoing, const Vec3& incident, bool first_column_only,
@@ -288,14 +309,17 @@ void PaintTable::evaluate(const Wavelengths& w, const Vec3& outgoing, const Vec3
     f.form = ScatteringMatrix::Form::general;
     if (equally_spaced(w)) {
         const WavelengthPlace hero = wavelength_place(w.nm[0]);
-        first_column_only ? interpolate<1>(at, hero, matrix) : interpolate<4>(at, hero, matrix);
+        if (first_column_only)
+            matrix[0] = first_column(at, hero);
+        else
+            whole_matrix(at, hero, matrix);
         for (int column = 0; column < count; ++column)
             for (int row = 0; row < 4; ++row)
                 f.m[4 * column + row] = turned(stokes_row(matrix[column], row), hero.quarter);
     } else {
         for (int k = 0; k < wavelengths_per_path; ++k) {
             const WavelengthPlace single = wavelength_place(w.nm[k]);
-            interpolate<4>(at, single, matrix);
+            whole_matrix(at, single, matrix);
             for (int column = 0; column < count; ++column)
                 for (int row = 0; row < 4; ++row)
                     f.m[4 * column + row][k] = stokes_row(matrix[column], row)[single.quarter];

@@ -7,9 +7,9 @@
 // carried up the sphere. Such frames turn nowhere faster than the azimuth does, neither at the normal, where meridian
 // planes do, nor at backscattering, where scattering planes do, so that linear interpolation is safe everywhere.
 //
-// Reciprocity spares half of the pairs of polar angles: in these frames f(o, i) = S f(i, o)^T S with S = diag(1, 1, 1,
-// -1) at the same phi, for exchanging the rays mirrors phi, and turns y over with the direction of each ray. Only
-// theta_o <= theta_i is kept.
+// Reciprocity spares half of the pairs of polar angles of the whole matrix: in these frames f(o, i) = S f(i, o)^T S
+// with S = diag(1, 1, 1, -1) at the same phi, for exchanging the rays mirrors phi, and turns y over with the direction
+// of each ray. Only theta_o <= theta_i is kept.
 //
 // A path's wavelengths are a quarter of the range apart (Wavelengths::sample), so all four lie at the same place in
 // their quarters: a node keeps the four quarters beside each other, and one load brings a column of the matrix for all
@@ -96,17 +96,24 @@ class PaintTable {
         float weight;
     };
     WavelengthPlace wavelength_place(float nm) const;
-    // The first `count` columns of the body at `at` for four wavelengths in the order of the quarters.
-    template <int count>
-    void interpolate(const Place& at, const WavelengthPlace& wavelength, StokesPacket* columns) const;
+    // The body at `at` for four wavelengths in the order of the quarters: its first column, and all four.
+    StokesPacket first_column(const Place& at, const WavelengthPlace& wavelength) const;
+    void whole_matrix(const Place& at, const WavelengthPlace& wavelength, StokesPacket* columns) const;
+    // visit(theta_o, theta_i, phi, weights of the lower and of the higher wavelength) for the nodes about a place.
+    template <class Visit>
+    void for_corners(const Place& at, const WavelengthPlace& wavelength, const Visit& visit) const;
     double wavelength_nm(int index) const;  // of 4 intervals + 1 nodes over the range
     void tabulate_body(const brdf::MuellerTable& table);
+    void gather_first_columns();
     void tabulate_specular(const brdf::MuellerTable& table);
     void tabulate_sampling();
     // Place of a pair of polar angles, the smaller first, and an azimuth.
     std::size_t node(int small, int large, int p) const {
         const int pair = small * size_.angles - small * (small - 1) / 2 + large - small;
         return (static_cast<std::size_t>(pair) * size_.azimuths + p) * block_;
+    }
+    std::size_t first_node(int o, int i, int p) const {
+        return (static_cast<std::size_t>(o * size_.angles + i) * size_.azimuths + p) * (16 * nodes_);
     }
     // Light's direction cell by cell, for one node of the viewer's angle.
     struct DirectionCells {
@@ -124,9 +131,12 @@ class PaintTable {
     int specular_wavelengths_ = 1;   // nodes over the whole range
     std::size_t block_;              // halves a node holds: [node of wavelength][column][row][quarter]
     std::vector<std::uint16_t, LargePages<std::uint16_t>> body_;  // [theta_o <= theta_i][phi][block]
-    std::vector<std::array<float, 4>> specular_;                  // [theta][wavelength]
-    std::vector<float> specular_share_;                           // [theta_o]
-    std::vector<DirectionCells> directions_;                      // [theta_o]
+    // What unpolarized light becomes, which is asked for most: beside each other, for memory is read in lines.
+    // [theta_o][theta_i][phi][node of wavelength][row][quarter]
+    std::vector<std::uint16_t, LargePages<std::uint16_t>> first_columns_;
+    std::vector<std::array<float, 4>> specular_;  // [theta][wavelength]
+    std::vector<float> specular_share_;           // [theta_o]
+    std::vector<DirectionCells> directions_;      // [theta_o]
 };
 
 }  // namespace patina::render

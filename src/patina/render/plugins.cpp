@@ -6,6 +6,7 @@
 #include "patina/render/aov.h"
 #include "patina/render/bsdf_set.h"
 #include "patina/render/medium.h"
+#include "patina/render/mesh_attribute.h"
 #include "patina/render/texel_grid.h"
 
 namespace patina::render {
@@ -27,18 +28,20 @@ void add_shapes(std::vector<PluginDescriptor>& all) {
           {{"center", "point", "scene units", "0, 0, 0", "", "its centre"},
            {"radius", "number", "scene units", "1", "> 0", "its radius"}});
     shape("rectangle", "The square -1 .. 1 in x and y, normal along +z.", {});
-    shape("disk", "The unit disk in x and y, normal along +z.", {});
-    shape("cube", "The cube -1 .. 1, normals outward.", {});
+    shape("disk", "The unit disk in x and y, normal along +z; u is the radius, v the azimuth.", {});
+    shape("cube", "The cube -1 .. 1, normals outward; u and v are 0 .. 1 on each face.", {});
     shape("cylinder", "The side of a cylinder, normals outward; 512 facets with its own normals.",
           {{"p0", "point", "scene units", "0, 0, 0", "", "middle of one end"},
            {"p1", "point", "scene units", "0, 0, 1", "", "middle of the other"},
            {"radius", "number", "scene units", "1", "> 0", "its radius"}});
-    for (const char* name : {"obj", "ply"})
-        shape(name, "A triangle mesh from a file.",
-              {{"filename", "path", "", "", "", "the file"},
-               {"face_normals", "boolean", "", "false", "", "flat shading, the file's normals unused"},
-               {"flip_tex_coords", "boolean", "", "true for obj", "",
-                "v becomes 1 - v, for files whose v grows upwards"}});
+    const std::vector<ParameterDescriptor> of_file = {
+        {"filename", "path", "", "", "", "the file"},
+        {"face_normals", "boolean", "", "false", "", "flat shading, the file's normals unused"},
+        {"flip_tex_coords", "boolean", "", "true for obj", "", "v becomes 1 - v, for files whose v grows upwards"}};
+    for (const char* name : {"obj", "ply"}) shape(name, "A triangle mesh from a file.", of_file);
+    std::vector<ParameterDescriptor> packed = of_file;
+    packed.push_back({"shape_index", "integer", "", "0", ">= 0", "which of the file's meshes"});
+    shape("serialized", "A triangle mesh from a file of Mitsuba's.", std::move(packed));
 }
 
 const std::vector<ParameterDescriptor> polarization = {
@@ -53,6 +56,11 @@ void add_copies(std::vector<PluginDescriptor>& all) {
     all.push_back({"shape", "shapegroup", "Shapes to be copied by instances; not seen itself.", {}});
     all.push_back({"shape", "instance", "A copy of a shapegroup, which it refers to.", {to_world}});
 }
+
+const std::vector<ParameterDescriptor> field_of_view = {
+    {"fov", "number", "degree", "39.6", "0 .. 180", "field of view along fov_axis"},
+    {"fov_axis", "string", "", "x", "x, y, diagonal, smaller, larger", "what fov measures"},
+    {"focal_length", "string", "mm", "50mm", "> 0", "instead of fov, on 36 x 24 mm film"}};
 
 void add_emitters(std::vector<PluginDescriptor>& all) {
     const auto emitter = [&](const char* name, const char* doc, std::vector<ParameterDescriptor> parameters) {
@@ -71,7 +79,14 @@ void add_emitters(std::vector<PluginDescriptor>& all) {
             {to_world,
              {"intensity", "spectrum", "W/(sr nm)", "1", ">= 0", "radiant intensity inside beam_width"},
              {"cutoff_angle", "number", "degree", "20", "0 .. 180", "beyond it nothing"},
-             {"beam_width", "number", "degree", "3/4 of cutoff_angle", "0 .. cutoff_angle", "until it constant"}});
+             {"beam_width", "number", "degree", "3/4 of cutoff_angle", "0 .. cutoff_angle", "until it constant"},
+             {"texture", "texture", "", "", "", "factors on the intensity, over the square about the cone"}});
+    std::vector<ParameterDescriptor> projector = field_of_view;
+    projector.insert(projector.begin(), {to_world,
+                                         {"irradiance", "texture or spectrum", "W/(m^2 nm)", "1", ">= 0",
+                                          "1/pi of it, on a plane across the axis at distance 1"},
+                                         {"scale", "number", "", "1", ">= 0", "factor on it"}});
+    emitter("projector", "A picture thrown by a perspective camera turned round.", std::move(projector));
     emitter("directional", "Parallel light.",
             {{"direction", "vector", "", "+z through to_world", "", "in which the light travels"},
              to_world,
@@ -96,9 +111,7 @@ void add_sensors(std::vector<PluginDescriptor>& all) {
         {"near_clip", "number", "scene units", "0.01", "", "accepted, without effect"},
         {"far_clip", "number", "scene units", "10000", "", "accepted, without effect"}};
     std::vector<ParameterDescriptor> camera = planes;
-    camera.push_back({"fov", "number", "degree", "39.6", "0 .. 180", "field of view along fov_axis"});
-    camera.push_back({"fov_axis", "string", "", "x", "x, y, diagonal, smaller, larger", "what fov measures"});
-    camera.push_back({"focal_length", "string", "mm", "50mm", "> 0", "instead of fov, on 36 x 24 mm film"});
+    camera.insert(camera.end(), field_of_view.begin(), field_of_view.end());
     std::vector<ParameterDescriptor> pinhole = camera;
     pinhole.push_back({"focus_distance", "number", "scene units", "", "", "accepted, without effect"});
     sensor("perspective", "Pinhole camera.", pinhole);
@@ -133,6 +146,7 @@ void add_film(std::vector<PluginDescriptor>& all) {
                         {"pixel_format", "string", "", "rgba", "", "accepted, without effect"},
                         {"component_format", "string", "", "float32", "", "accepted, without effect"},
                         {"banner", "boolean", "", "false", "", "accepted, without effect"},
+                        {"compensate", "boolean", "", "false", "", "accepted, without effect"},
                         {"sample_border", "boolean", "", "false", "", "accepted, without effect"}}});
     const char* positive = "Reconstruction filter, sampled.";
     all.push_back({"rfilter", "box", positive, {{"radius", "number", "pixel", "0.5", "0.001 .. 100", "reach"}}});
@@ -157,12 +171,16 @@ void add_film(std::vector<PluginDescriptor>& all) {
 }
 
 void add_integrators(std::vector<PluginDescriptor>& all) {
+    const std::vector<ParameterDescriptor> schedule = {
+        {"samples_per_pass", "integer", "", "", ">= 1", "accepted, without effect"},
+        {"block_size", "integer", "pixel", "", ">= 0", "accepted, without effect"}};
     const auto integrator = [&](const char* name, const char* doc, const char* hide_emitters,
                                 std::vector<ParameterDescriptor> more = {}) {
         std::vector<ParameterDescriptor> parameters = {
             {"max_depth", "integer", "", "-1", ">= -1", "segments of a path, 1 = emitters only, -1 = no limit"},
             {"rr_depth", "integer", "", "5", ">= 1", "segments before Russian roulette begins, no more than 256"},
             {"hide_emitters", "boolean", "", hide_emitters, "", "emitters do not show directly"}};
+        parameters.insert(parameters.end(), schedule.begin(), schedule.end());
         parameters.insert(parameters.end(), more.begin(), more.end());
         all.push_back({"integrator", name, doc, std::move(parameters)});
     };
@@ -182,6 +200,7 @@ void add_integrators(std::vector<PluginDescriptor>& all) {
         {"hide_emitters", "boolean", "", "false", "", "emitters do not show directly"}};
     for (const char* name : {"shading_samples", "emitter_samples", "bsdf_samples"})
         (of_direct.emplace_back(samples)).name = name;
+    of_direct.insert(of_direct.end(), schedule.begin(), schedule.end());
     all.push_back({"integrator", "direct", "Path tracing of emitters and directly lit surfaces (max_depth 2).",
                    std::move(of_direct)});
     integrator("bidirectional", "Bidirectional path tracing with multiple importance sampling, polarized.", "false");
@@ -198,19 +217,25 @@ void add_integrators(std::vector<PluginDescriptor>& all) {
                    "Wraps an integrator; what the camera sees first becomes further channels of the picture.",
                    {{"aovs", "string", "", "", "", "\"name:kind, ...\" of " + kinds_of_aovs()}}});
     all.push_back({"integrator", "stokes", "Wraps an integrator; every picture has Stokes components anyway.", {}});
+    all.push_back({"integrator", "moment", "Wraps an integrator; every picture has variances anyway.", {}});
     all.push_back({"texture", "bitmap", "A picture as a reflectance, a number or a radiance over a surface.",
                    picture_parameters()});
     all.push_back({"texture",
                    "checkerboard",
                    "Two spectra or numbers in squares.",
-                   {{"color0", "spectrum", "", "0.4", "", "of the first square"},
-                    {"color1", "spectrum", "", "0.2", "", "of its neighbours"},
+                   {{"color0", "spectrum or texture", "", "0.4", "", "of the first square"},
+                    {"color1", "spectrum or texture", "", "0.2", "", "of its neighbours"},
                     {"to_uv", "transform", "", "identity", "", "of texture coordinates"}}});
+    all.push_back(attribute_descriptor());
 }
 
 std::vector<PluginDescriptor> build_registry() {
     std::vector<PluginDescriptor> all = bsdf_descriptors();
     for (PluginDescriptor& medium : medium_descriptors()) all.push_back(std::move(medium));
+    all.push_back({"volume",
+                   "constvolume",
+                   "A coefficient of a medium that is the same everywhere.",
+                   {{"value", "spectrum", "", "1", ">= 0", "of the coefficient"}}});
     add_shapes(all);
     add_copies(all);
     add_emitters(all);
@@ -242,17 +267,15 @@ constexpr WayOut ways_out[] = {
      "\"rayleigh\" and a \"directional\" sun"},
     {"emitter", "sky", "write an \"envmap\" from another program, or use \"constant\" with polarization \"rayleigh\""},
     {"emitter", "sun", "use \"directional\""},
-    {"emitter", "projector", "use \"spot\", or \"area\" with a textured radiance"},
     {"emitter", "directionalarea", "use \"directional\" or \"area\""},
-    {"shape", "serialized", "convert the mesh to PLY or OBJ"},
     {"shape", "bsplinecurve", "convert the curves to a mesh"},
     {"shape", "linearcurve", "convert the curves to a mesh, or use \"cylinder\""},
     {"shape", "heightfield", "convert it to a mesh"},
     {"shape", "sdfgrid", "convert it to a mesh"},
     {"medium", "heterogeneous", "use \"homogeneous\""},
-    {"texture", "mesh_attribute", "bake the colours into a bitmap texture"},
+    {"volume", "gridvolume", "media are the same everywhere: use \"constvolume\""},
+    {"shape", "merge", "leave its shapes as they are, each for itself"},
     {"texture", "volume", "bake the colours into a bitmap texture"},
-    {"integrator", "moment", "every picture has variance channels; name the inner integrator alone"},
     {"integrator", "depth", "use \"aov\" with aovs=\"d:depth\""},
 };
 

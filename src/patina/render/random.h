@@ -35,6 +35,29 @@ Bits reverse_bits(Bits x) {
     x = ((x & 0x33333333u) << 2) | ((x & 0xccccccccu) >> 2);
     return ((x & 0x55555555u) << 1) | ((x & 0xaaaaaaaau) >> 1);
 }
+#if defined(__AVX2__)
+// By a table of half bytes, which a shuffle of bytes looks up.
+template <>
+inline WideBits reverse_bits<WideBits>(WideBits x) {
+    constexpr std::uint64_t reversed_low = 0xe060a020c0408000, reversed_high = 0xf070b030d0509010;
+    const __m128i table = _mm_set_epi64x(static_cast<long long>(reversed_high), static_cast<long long>(reversed_low));
+    const __m128i bytes = _mm_setr_epi8(3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12);
+    const WideBits low = x & 0x0f0f0f0fu, high = (x >> 4) & 0x0f0f0f0fu;
+#if defined(__AVX512BW__)
+    const __m512i raised = _mm512_broadcast_i32x4(table);
+    const __m512i lowered = _mm512_srli_epi32(raised, 4);  // half bytes do not cross into their neighbours
+    const __m512i turned =
+        _mm512_or_si512(_mm512_shuffle_epi8(raised, (__m512i)low), _mm512_shuffle_epi8(lowered, (__m512i)high));
+    return (WideBits)_mm512_shuffle_epi8(turned, _mm512_broadcast_i32x4(bytes));
+#else
+    const __m256i raised = _mm256_broadcastsi128_si256(table);
+    const __m256i lowered = _mm256_srli_epi32(raised, 4);
+    const __m256i turned =
+        _mm256_or_si256(_mm256_shuffle_epi8(raised, (__m256i)low), _mm256_shuffle_epi8(lowered, (__m256i)high));
+    return (WideBits)_mm256_shuffle_epi8(turned, _mm256_broadcastsi128_si256(bytes));
+#endif
+}
+#endif
 
 // Owen's nested uniform scrambling of a number whose digits are in reversed order, by hashing (Laine & Karras 2011;
 // constants of Burley 2020, Practical hash-based Owen scrambling, listing 4).

@@ -5,6 +5,7 @@
 
 #include "patina/core/error.h"
 #include "patina/render/instance_builder.h"
+#include "patina/render/mesh_attribute.h"
 #include "patina/render/plugins.h"
 #include "patina/render/scene.h"
 #include "patina/render/scene_white.h"
@@ -20,14 +21,15 @@ class SceneBuilder {
         : root_(root),
           chosen_sensor_(sensor),
           resources_(resources),
-          bsdf_builder_{&resources, [this](const std::shared_ptr<const Properties>& node) { return bsdf_index(node); },
+          bsdf_builder_{&resources_, [this](const std::shared_ptr<const Properties>& node) { return bsdf_index(node); },
                         &scene_->notes} {}
 
     std::shared_ptr<const Scene> build() {
         scene_->matching = std::make_unique<const ColourMatching>();
         for (const auto& node : root_.children_of("sensor")) sensors_.push_back({node, -1});
         if ((scene_->integrator_node = root_.only_child("integrator"))) build_integrator(*scene_->integrator_node);
-        for (const auto& node : root_.children_of("bsdf")) bsdf_index(node);
+        for (const auto& node : root_.children_of("bsdf"))
+            if (!reads_attributes(*node)) bsdf_index(node);
         for (const auto& node : root_.children_of("medium")) medium_index(node);
         for (const auto& node : root_.children_of("shape"))
             if (!instances_.add(*node)) build_shape(*node, -1);
@@ -137,19 +139,23 @@ class SceneBuilder {
 
     void build_shape(const Properties& node, int group) {
         const int index = append_shape(node, resources_, scene_->geometry, group);
+        resources_.mesh = scene_->geometry.shapes[index].is_mesh ? scene_->geometry.meshes.back().mesh : nullptr;
         for (const char* lamp_or_meter : {"emitter", "sensor"})
             if (const auto child = group >= 0 ? node.only_child(lamp_or_meter) : nullptr)
                 throw input_error(child->where,
                                   fmt::format("no {} can stand in what moves or is copied", child->category));
         auto material = node.only_child("bsdf");
         if (material && left_handed(node) && holds_relief(*material)) material = mirrored(material);
+        if (material && reads_attributes(*material)) material = copied(material);
         scene_->geometry.shapes[index].bsdf = material ? bsdf_index(material) : default_bsdf();
         scene_->geometry.shapes[index].interior = side_medium(node, "interior");
         scene_->geometry.shapes[index].exterior = side_medium(node, "exterior");
         if (const auto emitter = node.only_child("emitter")) {
             scene_->geometry.shapes[index].emitter = static_cast<int>(emitters_.size());
             states_.push_back(build_polarization(*emitter, node.transform("to_world")));
-            emitters_.push_back(AreaEmitter{index, build_area_radiance(*emitter, resources_)});
+            Texture radiance = build_area_radiance(*emitter, resources_);
+            auto table = LampTable::of(scene_->geometry, index, radiance);
+            emitters_.push_back(AreaEmitter{index, std::move(radiance), std::move(table)});
         }
         for (const auto& sensor : node.children_of("sensor")) sensors_.push_back({sensor, index});
         expect_known_properties(node);
@@ -157,8 +163,9 @@ class SceneBuilder {
 
     // Do u, v and the normal of a shape make a left-handed system? Reliefs want to know.
     static bool left_handed(const Properties& shape) {
-        if (shape.type == "obj" || shape.type == "ply") return shape.boolean("flip_tex_coords", shape.type == "obj");
-        return shape.type == "sphere";
+        if (shape.type == "obj" || shape.type == "ply" || shape.type == "serialized")
+            return shape.boolean("flip_tex_coords", shape.type == "obj");
+        return shape.type == "sphere" || shape.type == "cube";
     }
     static bool holds_relief(const Properties& model) {
         return model.type == "bumpmap" ||
@@ -178,6 +185,15 @@ class SceneBuilder {
         return copy = changed;
     }
 
+    // The same model for one mesh alone, whose attributes it reads.
+    std::shared_ptr<const Properties> copied(const std::shared_ptr<const Properties>& model) {
+        auto copy = std::make_shared<Properties>(*model);
+        for (auto& child : copy->children)
+            if (child.node->category == "bsdf") child.node = copied(child.node);
+        own_models_.push_back(copy);
+        return copy;
+    }
+
     static bool any_texture(const Properties& node) {
         for (const auto& child : node.children)
             if (child.node->category == "texture" || any_texture(*child.node)) return true;
@@ -187,12 +203,13 @@ class SceneBuilder {
     const Properties& root_;
     const std::string& chosen_sensor_;
     std::vector<std::pair<std::shared_ptr<const Properties>, int>> sensors_;  // with the shapes they stand in
-    const SceneResources& resources_;
+    SceneResources resources_;
     std::shared_ptr<Scene> scene_ = std::make_shared<Scene>();
     BsdfBuilder bsdf_builder_;
     std::map<const Properties*, int> bsdf_of_node_;  // -1 while being built
     std::map<const Properties*, int> medium_of_node_;
     std::map<const Properties*, std::shared_ptr<const Properties>> mirrored_;
+    std::vector<std::shared_ptr<const Properties>> own_models_;  // kept, as models are known by their address
     int default_bsdf_ = -1;
     InstanceBuilder instances_{scene_->geometry,
                                [this](const Properties& node, int group) { build_shape(node, group); }};

@@ -34,6 +34,10 @@ struct SceneResources {
     std::function<std::shared_ptr<const brdf::HalfAngleTable>(const std::string& path)> load_half_angle_table;
     std::function<std::shared_ptr<const brdf::MerlTable>(const std::string& path)> load_merl_table;
 
+    // The mesh whose materials and lamp are being built, null for other shapes: what `mesh_attribute` reads. The
+    // builder of a scene sets it.
+    std::shared_ptr<const TriangleMesh> mesh;
+
     // Optical constants by name or file; empty: the built-in library (optics/materials.h). Throws Error(input).
     std::function<optics::OpticalConstants(const std::string& name)> material;
 };

@@ -1,32 +1,10 @@
 #include "patina/render/sensor.h"
 
+#include "patina/render/concentric_disk.h"
 #include "patina/render/sampling.h"
 #include "patina/render/shape_area.h"
 
 namespace patina::render {
-
-namespace {
-
-// Where concentric_disk() took a point from.
-Vec2 from_concentric_disk(const Vec2& d) {
-    const float r = d.norm();
-    if (r == 0) return {0.5f, 0.5f};
-    float phi = std::atan2(d.y(), d.x());
-    if (phi < -0.25f * pi_f) phi += 2 * pi_f;
-    const auto arc = [&](float from) { return (phi - from) * 4 * inv_pi_f; };
-    Vec2 square;
-    if (phi < 0.25f * pi_f)
-        square = {r, r * arc(0)};
-    else if (phi < 0.75f * pi_f)
-        square = {-r * arc(0.5f * pi_f), r};
-    else if (phi < 1.25f * pi_f)
-        square = {-r, -r * arc(pi_f)};
-    else
-        square = {r * arc(1.5f * pi_f), -r};
-    return 0.5f * (square + Vec2::Ones());
-}
-
-}  // namespace
 
 void Sensor::rays(const FloatLanes& film_x, const FloatLanes& film_y, const FloatLanes& lens_x,
                   const FloatLanes& lens_y, int count, CameraRay* const* results) const {
@@ -167,7 +145,7 @@ bool Sensor::see_from_surface(const Vec3& point, const Vec2& lens, Sight& sight)
     sight.direction = d / sight.distance;
     const Vec3 local = Frame(normal, rotation.col(0)).to_local(sight.direction);
     if (!(local.z() > 0)) return false;
-    sight.film = from_concentric_disk(local.head<2>());
+    sight.film = square_of_disk(local.head<2>());
     sight.importance = local.z() * inv_pi_f;
     sight.stokes_axis = Frame(sight.direction, rotation.col(0)).s;
     return true;

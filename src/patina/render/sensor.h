@@ -95,6 +95,10 @@ struct Sensor {
 // the sensor. Throws Error(input) for unknown sensors and values out of range.
 Sensor build_sensor(const Properties& node, int film_width, int film_height, const Geometry& geometry, int shape);
 
+// tan(half the field of view) along x from `fov` and `fov_axis`, or `focal_length` on 36 x 24 mm film; of cameras, and
+// of projectors. `aspect` is width over height.
+double tangent_along_x(const Properties& node, double aspect);
+
 // When light counts: `shutter_open` and `shutter_close` of a sensor.
 struct Shutter {
     double open_s = 0, close_s = 0;

@@ -9,9 +9,6 @@
 
 namespace patina::render {
 
-namespace {
-
-// tan(half field of view) along x from `fov` and `fov_axis`, or `focal_length` on 36 x 24 mm film.
 double tangent_along_x(const Properties& node, double aspect) {
     double fov_deg = 0;
     std::string axis = "x";
@@ -41,6 +38,8 @@ double tangent_along_x(const Properties& node, double aspect) {
     throw input_error(node.location_of("fov_axis"), fmt::format("unknown fov_axis \"{}\"", axis), "",
                       did_you_mean(axis, {"x", "y", "diagonal", "smaller", "larger"}));
 }
+
+namespace {
 
 // The sensor's place and axes.
 void place(const Properties& node, const Eigen::Matrix4d& to_world, Sensor& sensor) {

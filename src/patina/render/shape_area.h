@@ -7,7 +7,7 @@ namespace patina::render {
 
 // u in the unit square; `normal` is that of the shape's outside, `uv` the texture coordinates.
 void point_of_shape(const Geometry& geometry, const Shape& shape, const Vec2& u, Vec3& position, Vec3& normal,
-                    Vec2& uv);
+                    SurfaceUv& uv);
 void point_of_shape(const Geometry& geometry, const Shape& shape, const Vec2& u, Vec3& position, Vec3& normal);
 
 }  // namespace patina::render

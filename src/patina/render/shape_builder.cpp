@@ -63,8 +63,14 @@ std::vector<AnalyticShape> analytic_shapes(const Properties& node) {
     std::vector<AnalyticShape> faces;
     for (int axis = 0; axis < 3; ++axis)
         for (double side : {-1.0, 1.0}) {
-            const Vector3d u = Vector3d::Unit((axis + 1) % 3), v = side * Vector3d::Unit((axis + 2) % 3);
-            faces.push_back(face(m, Kind::parallelogram, side * Vector3d::Unit(axis), u, v, node.where));
+            // Mitsuba's u and v, which with the outside make a left-handed system.
+            const Vector3d outside = side * Vector3d::Unit(axis);
+            const Vector3d u = axis == 0   ? Vector3d(Vector3d::UnitY())
+                               : axis == 2 ? Vector3d(side * Vector3d::UnitY())
+                               : side < 0  ? Vector3d(Vector3d::UnitZ())
+                                           : Vector3d(-Vector3d::UnitX());
+            faces.push_back(face(m, Kind::parallelogram, outside, u, u.cross(outside), node.where));
+            faces.back().flipped ^= true;
         }
     return faces;
 }
@@ -98,6 +104,9 @@ void check_mesh(const TriangleMesh& mesh, const SourceLocation& where) {
     if ((!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size()) ||
         (!mesh.uvs.empty() && mesh.uvs.size() != mesh.positions.size()))
         throw input_error(where, what + " has another number of normals or texture coordinates than of vertices");
+    for (const MeshAttribute& a : mesh.attributes)
+        if (a.values.size() != (a.of_triangles ? mesh.triangles.size() : mesh.positions.size()) * a.channels)
+            throw input_error(where, fmt::format("{}: attribute \"{}\" has {} values", what, a.name, a.values.size()));
 }
 
 // The side of a `cylinder` from p0 to p1, normals outward, without lids. Facets whose area is that of the cylinder;
@@ -109,14 +118,15 @@ TriangleMesh cylinder(const Properties& node) {
     if (!(radius > 0) || !((p1 - p0).norm() > 0) || !p0.allFinite() || !p1.allFinite())
         throw input_error(node.location_of(radius > 0 ? "p1" : "radius"), "the cylinder has no area",
                           fmt::format("its radius is {}, its length {}", radius, (p1 - p0).norm()));
-    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), p1 - p0);
+    // The azimuth counts from where Mitsuba's frame about the axis has its x.
+    const Frame about(Vec3((p1 - p0).normalized().cast<float>()));
     constexpr int facets = 512;
     const double reach = radius * (pi / facets) / std::sin(pi / facets);
     TriangleMesh mesh;
     mesh.name = "cylinder";
     for (int i = 0; i <= facets; ++i) {
         const double phi = 2 * pi * i / facets;
-        const Vector3d outward = turn * Vector3d(std::cos(phi), std::sin(phi), 0);
+        const Vector3d outward = std::cos(phi) * about.s.cast<double>() + std::sin(phi) * about.t.cast<double>();
         for (const Vector3d& end : {p0, p1}) {
             mesh.uvs.emplace_back(static_cast<float>(i) / facets, mesh.positions.size() % 2 ? 1.0f : 0.0f);
             mesh.positions.push_back((end + reach * outward).cast<float>());
@@ -130,12 +140,22 @@ TriangleMesh cylinder(const Properties& node) {
     return mesh;
 }
 
+// Which of the meshes in a file.
+std::int64_t expect_index(const Properties& node) {
+    const std::int64_t index = node.integer("shape_index", 0);
+    if (index >= 0 && index < 1'000'000) return index;
+    throw input_error(node.location_of("shape_index"), "shape_index out of range", fmt::format("it is {}", index),
+                      "numbers count from 0");
+}
+
 // The mesh a file holds, with normals.
 TriangleMesh mesh_of_file(const Properties& node, const SceneResources& resources) {
     const std::string file = node.string("filename");
     const SourceLocation where = node.location_of("filename");
     if (!resources.load_mesh) throw Error(ErrorKind::not_built, where.to_string() + ": mesh files are not available");
-    TriangleMesh mesh = *resources.load_mesh(file, node.type);
+    std::string kind = node.type;
+    if (kind == "serialized") kind += fmt::format(" {}", expect_index(node));
+    TriangleMesh mesh = *resources.load_mesh(file, kind);
     check_mesh(mesh, where);
     if (node.boolean("flip_tex_coords", node.type == "obj"))
         for (Vec2& uv : mesh.uvs) uv.y() = 1 - uv.y();
@@ -163,12 +183,12 @@ MeshShape mesh_shape(const Properties& node, const SceneResources& resources, fl
 
     // Drop triangles without area: nothing can hit them, and they have no normal.
     std::vector<double> areas;
-    std::erase_if(mesh->triangles, [&](const auto& t) {
+    mesh->keep_triangles([&](const auto& t) {
         const Vec3 cross =
             (mesh->positions[t[1]] - mesh->positions[t[0]]).cross(mesh->positions[t[2]] - mesh->positions[t[0]]);
-        if (!(cross.squaredNorm() > 1e-37f)) return true;
+        if (!(cross.squaredNorm() > 1e-37f)) return false;
         areas.push_back(0.5 * cross.norm());
-        return false;
+        return true;
     });
     if (areas.empty()) throw input_error(where, fmt::format("mesh \"{}\" has no area", mesh->name));
     MeshShape shape;
@@ -206,7 +226,7 @@ int append_shape(const Properties& node, const SceneResources& resources, Geomet
     const bool flip = node.boolean("flip_normals", false);
     Shape shape;
     shape.group = group;
-    if (node.type == "obj" || node.type == "ply" || node.type == "cylinder") {
+    if (node.type != "sphere" && node.type != "rectangle" && node.type != "disk" && node.type != "cube") {
         MeshShape mesh = mesh_shape(node, resources, shape.area);
         mesh.shape = index;
         mesh.group = group;

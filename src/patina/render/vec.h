@@ -71,6 +71,14 @@ inline Vec3 common_perpendicular(const Vec3& a, const Vec3& b) {
     return s;
 }
 
+// The same for a local normal (0, 0, 1) and a local direction.
+inline Vec3 perpendicular_to_normal(const Vec3& v) {
+    const float length2 = v.x() * v.x() + v.y() * v.y();
+    if (!(length2 > 1e-12f)) return Vec3::UnitX();
+    const float scale = 1 / std::sqrt(length2);
+    return {-v.y() * scale, v.x() * scale, 0};
+}
+
 struct Ray {
     Vec3 origin, direction;
     float t_max = INFINITY;

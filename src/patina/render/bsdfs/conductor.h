@@ -21,7 +21,7 @@ struct Conductor {
         const Wavelengths& w = *point.wavelengths;
         const FresnelPacket f = fresnel_conductor(outgoing.z(), n.at(w), k.at(w));
         const Float4 scale = specular_reflectance.at(w, point.uv);
-        const Vec3 axis = common_perpendicular(Vec3::UnitZ(), outgoing);
+        const Vec3 axis = perpendicular_to_normal(outgoing);
         sample.incident = Vec3(-outgoing.x(), -outgoing.y(), outgoing.z());
         sample.pdf = 1;
         sample.delta = true;

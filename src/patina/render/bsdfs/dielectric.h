@@ -28,19 +28,19 @@ struct Dielectric {
         const FresnelInterface f = fresnel_dielectric(std::abs(cos_o), eta);
 
         // Reflect or refract with the probability of unpolarized light, on average over the wavelengths.
-        const float reflectance = mean(f.reflection.a);
-        const Vec3 axis = common_perpendicular(Vec3::UnitZ(), outgoing);
+        const float reflected = point.chance_of_reflection(mean(f.reflection.a));
+        const Vec3 axis = perpendicular_to_normal(outgoing);
         sample.delta = true;
-        if (u < reflectance) {
+        if (u < reflected) {
             sample.incident = Vec3(-outgoing.x(), -outgoing.y(), cos_o);
-            sample.pdf = reflectance;
-            const Float4 weight = specular_reflectance.at(w, point.uv) / reflectance;
+            sample.pdf = reflected;
+            const Float4 weight = specular_reflectance.at(w, point.uv) * (1 / reflected);
             sample.weight.set_fresnel(f.reflection.a * weight, f.reflection.b * weight, f.reflection.c * weight,
                                       f.reflection.d * weight, axis, axis);
             return true;
         }
         if (f.cos_t[0] == 0) return false;  // the hero is totally reflected, another wavelength was not
-        sample.pdf = 1 - reflectance;
+        sample.pdf = 1 - reflected;
         sample.dispersed = dispersive;
         sample.eta = eta[0];
         const float inv_eta = 1 / eta[0];

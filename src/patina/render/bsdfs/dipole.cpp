@@ -67,7 +67,7 @@ void Dipole::leave(const Wavelengths& w, const Vec3& outgoing, ScatteringMatrix&
     m.form = ScatteringMatrix::Form::general;
     for (Float4& entry : m.m) entry = splat(0);
     m.m[0] = t.a, m.m[1] = t.b;
-    m.x_in = m.x_out = common_perpendicular(Vec3::UnitZ(), outgoing);
+    m.x_in = m.x_out = perpendicular_to_normal(outgoing);
 }
 
 void Dipole::enter(const Wavelengths& w, const Vec3& incident, ScatteringMatrix& m) const {
@@ -78,7 +78,7 @@ void Dipole::enter(const Wavelengths& w, const Vec3& incident, ScatteringMatrix&
     m.form = ScatteringMatrix::Form::general;
     for (Float4& entry : m.m) entry = splat(0);
     m.m[0] = scale * t.a, m.m[4] = scale * t.b;
-    m.x_in = m.x_out = common_perpendicular(Vec3::UnitZ(), incident);
+    m.x_in = m.x_out = perpendicular_to_normal(incident);
 }
 
 PluginDescriptor Dipole::describe() {

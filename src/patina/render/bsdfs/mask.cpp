@@ -8,7 +8,7 @@
 namespace patina::render {
 
 void Null::pass_through(const Vec3& outgoing, float probability, Float4 transmitted, BsdfSample& sample) {
-    const Vec3 axis = common_perpendicular(Vec3::UnitZ(), outgoing);
+    const Vec3 axis = perpendicular_to_normal(outgoing);
     const Float4 t = transmitted / probability;
     sample.incident = -outgoing;
     sample.pdf = probability;

@@ -21,7 +21,7 @@ struct Paint {
         const float mirror = table->specular_share(outgoing.z());
         if (u < mirror) {
             const auto [a, b, c, d] = table->specular(*point.wavelengths, outgoing.z());
-            const Vec3 axis = common_perpendicular(Vec3::UnitZ(), outgoing);
+            const Vec3 axis = perpendicular_to_normal(outgoing);
             sample.incident = Vec3(-outgoing.x(), -outgoing.y(), outgoing.z());
             sample.pdf = mirror;
             sample.delta = true;

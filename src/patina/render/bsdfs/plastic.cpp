@@ -50,7 +50,7 @@ bool PlasticLayer::sample(const ShadingPoint& point, const Vec3& outgoing, float
     const FresnelPacket mirror = fresnel_dielectric(outgoing.z(), eta).reflection;
     const float share = specular_share(mirror.a);
     if (u < share && !roughness) {
-        const Vec3 axis = common_perpendicular(Vec3::UnitZ(), outgoing);
+        const Vec3 axis = perpendicular_to_normal(outgoing);
         sample.incident = Vec3(-outgoing.x(), -outgoing.y(), outgoing.z());
         sample.pdf = share;
         sample.delta = true;
@@ -98,8 +98,8 @@ void PlasticLayer::add_body(const ShadingPoint& point, const Vec3& outgoing, con
     f.m[1] = scale * out.b * in.a;
     f.m[4] = scale * out.a * in.b;
     f.m[5] = scale * out.b * in.b;
-    f.x_out = common_perpendicular(Vec3::UnitZ(), outgoing);
-    f.x_in = common_perpendicular(Vec3::UnitZ(), incident);
+    f.x_out = perpendicular_to_normal(outgoing);
+    f.x_in = perpendicular_to_normal(incident);
 }
 
 // Adds the facets' part times cos_i; returns the density of their visible normals.

@@ -1,6 +1,8 @@
 #include "patina/render/bsdfs/polarizer.h"
 
-#include "patina/core/constants.h"
+#include <fmt/format.h>
+
+#include "patina/core/error.h"
 
 namespace patina::render {
 
@@ -13,9 +15,19 @@ void set_general(ScatteringMatrix& m, const float (&rows)[4][4], Float4 scale) {
         for (int column = 0; column < 4; ++column) m.m[4 * column + row] = rows[row][column] * scale;
 }
 
-const ParameterDescriptor theta_parameter = {"theta", "number", "degree", "0", "", "turns the axis about the normal"};
+const ParameterDescriptor theta_parameter = {
+    "theta", "number or texture", "degree", "0", "", "turns the axis about the normal"};
 const ParameterDescriptor transmittance_parameter = {
     "transmittance", "spectrum or texture", "", "1", "0 .. 1", "of the polarization that passes"};
+
+ScalarTexture angle(const Properties& node, const char* name, double fallback_deg, const BsdfBuilder& builder) {
+    ScalarTexture texture = ScalarTexture::read(node, name, fallback_deg, *builder.resources);
+    for (float value : texture.values())
+        if (!(std::abs(value) < 1e6f))
+            throw input_error(node.location_of(name), fmt::format("{} out of range", name),
+                              fmt::format("it is {}", value), "give an angle in degrees");
+    return texture;
+}
 
 }  // namespace
 
@@ -26,12 +38,14 @@ bool PolarizationElement::sample(const ShadingPoint& point, const Vec3& outgoing
     sample.delta = true;
 
     // The axis across the ray; light travels along `outgoing` before and after.
-    const Vec3 axis(std::cos(theta_rad), std::sin(theta_rad), 0);
+    const auto in_rad = [&](const ScalarTexture& angle_deg) { return angle_deg.at(point.uv) * (pi_f / 180); };
+    const float theta = in_rad(theta_deg), delta = in_rad(delta_deg);
+    const Vec3 axis(std::cos(theta), std::sin(theta), 0);
     const Frame frame(outgoing, axis);
     sample.weight.x_in = sample.weight.x_out = frame.s;
 
     const Float4 t = transmittance.at(*point.wavelengths, point.uv);
-    const float c = cos_delta, s = sin_delta, h = kind == Kind::left_circular ? -1.0f : 1.0f;
+    const float c = std::cos(delta), s = std::sin(delta), h = kind == Kind::left_circular ? -1.0f : 1.0f;
     switch (kind) {
         case Kind::linear_polarizer:
             set_general(sample.weight, {{1, 1, 0, 0}, {1, 1, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}}, 0.5f * t);
@@ -50,7 +64,7 @@ bool PolarizationElement::sample(const ShadingPoint& point, const Vec3& outgoing
 PolarizationElement PolarizationElement::common(Kind kind, const Properties& node, const BsdfBuilder& builder) {
     PolarizationElement e;
     e.kind = kind;
-    e.theta_rad = static_cast<float>(radians(node.number("theta", 0.0)));
+    e.theta_deg = angle(node, "theta", 0, builder);
     e.transmittance = Texture::reflectance(node, "transmittance", 1.0f, *builder.resources);
     return e;
 }
@@ -71,13 +85,11 @@ PluginDescriptor Retarder::describe() {
             "Ideal linear retarder, fast axis along its axis.",
             {theta_parameter,
              transmittance_parameter,
-             {"delta", "number", "degree", "90", "", "phase between slow and fast axis"}}};
+             {"delta", "number or texture", "degree", "90", "", "phase between slow and fast axis"}}};
 }
 Retarder Retarder::build(const Properties& node, const BsdfBuilder& builder) {
     Retarder r{common(Kind::retarder, node, builder)};
-    const double delta = radians(node.number("delta", 90.0));
-    r.cos_delta = static_cast<float>(std::cos(delta));
-    r.sin_delta = static_cast<float>(std::sin(delta));
+    r.delta_deg = angle(node, "delta", 90, builder);
     return r;
 }
 

@@ -14,8 +14,7 @@ namespace patina::render {
 struct PolarizationElement {
     enum class Kind { linear_polarizer, retarder, right_circular, left_circular };
     Kind kind;
-    float theta_rad = 0;
-    float cos_delta = 1, sin_delta = 0;  // retarder
+    ScalarTexture theta_deg, delta_deg;  // delta of the retarder
     Texture transmittance;
 
     bool is_delta(const ShadingPoint&) const { return true; }

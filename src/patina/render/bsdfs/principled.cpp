@@ -36,15 +36,20 @@ struct LongTails {
 };
 constexpr Microfacets clearcoat_masking{MicrofacetKind::ggx, 0.25f, 0.25f};
 
+// The mirror image in the surface: facet statistics are the same from both sides.
+Vec3 to_upper(const Vec3& v, bool upper) {
+    return upper ? v : Vec3(v.x(), v.y(), -v.z());
+}
+
 }  // namespace
 
-Principled::Shares Principled::shares(const Vec2& uv) const {
-    const float coat = 0.25f * clearcoat.at(uv), diffuse = 1 - metallic.at(uv);
+Principled::Shares Principled::shares(const SurfaceUv& uv) const {
+    const float coat = 0.25f * clearcoat.at(uv), diffuse = (1 - metallic.at(uv)) * (1 - spec_trans.at(uv));
     const float all = 1 + coat + diffuse;
     return {1 / all, coat / all};
 }
 
-Microfacets Principled::facets(const Vec2& uv) const {
+Microfacets Principled::facets(const SurfaceUv& uv) const {
     const float alpha = sqr(roughness.at(uv)), aspect = std::sqrt(1 - 0.9f * anisotropic.at(uv));
     return {MicrofacetKind::ggx, std::max(0.001f, alpha / aspect), std::max(0.001f, alpha * aspect)};
 }
@@ -66,7 +71,7 @@ Float4 Principled::body(const ShadingPoint& point, Float4 base, float cos_o, flo
         const float grazing = (1 + w_o * (0.5f * retro - 1)) * (1 + w_i * (0.5f * retro - 1));
         shape += flat * (1.25f * (grazing * (1 / (cos_o + cos_i) - 0.5f) + 0.5f) - shape);
     }
-    Float4 f = base * (dielectric * shape * inv_pi_f);
+    Float4 f = base * (dielectric * (1 - spec_trans.at(point.uv)) * shape * inv_pi_f);
     if (const float rate = sheen.at(point.uv); rate > 0) {
         const float tint = sheen_tint.at(point.uv);
         const Float4 colour = tint > 0 ? 1 + tint * (hue(point, base) - 1) : splat(1);
@@ -77,23 +82,87 @@ Float4 Principled::body(const ShadingPoint& point, Float4 base, float cos_o, flo
 
 bool Principled::sample(const ShadingPoint& point, const Vec3& outgoing, float u, const Vec2& u2,
                         BsdfSample& sample) const {
-    if (outgoing.z() <= 0) return false;
-    const Shares share = shares(point.uv);
-    if (u < share.specular + share.clearcoat) {
-        const Vec3 m = u < share.specular ? facets(point.uv).sample(outgoing, u2)
-                                          : LongTails(clearcoat_gloss.at(point.uv)).sample(u2);
+    const bool above = outgoing.z() > 0;
+    const float through = glass(point.uv);
+    if (outgoing.z() == 0 || (!above && through <= 0)) return false;
+    const Vec3 o = to_upper(outgoing, above);
+    const Shares share = above ? shares(point.uv) : Shares{1, 0};
+    sample.eta = 1;
+    if (u < share.specular) {
+        // A visible facet refracts with the probability that it does, as far as it is glass.
+        const Vec3 m = facets(point.uv).sample(o, u2);
+        const float cos_m = o.dot(m), relative = above ? eta : 1 / eta;
+        if (cos_m <= 0) return false;
+        const FresnelInterface f = fresnel_dielectric(std::min(cos_m, 1.0f), splat(relative));
+        Vec3 i = 2 * cos_m * m - o;
+        if (u / share.specular < (above ? through : 1.0f) * f.transmission.a[0]) {
+            i = ((cos_m / relative - f.cos_t[0]) * m - o / relative).normalized();
+            if (i.z() >= 0) return false;
+            sample.eta = relative;
+        } else if (i.z() <= 0) {
+            return false;
+        }
+        sample.incident = to_upper(i, above);
+    } else if (u < share.specular + share.clearcoat) {
+        const Vec3 m = LongTails(clearcoat_gloss.at(point.uv)).sample(u2);
         sample.incident = 2 * outgoing.dot(m) * m - outgoing;
+        if (sample.incident.z() <= 0) return false;
     } else {
         sample.incident = cosine_hemisphere(u2);
     }
+    sample.delta = false;
     return weigh_by_all_lobes(*this, point, outgoing, sample);
 }
 
 bool Principled::evaluate(const ShadingPoint& point, const Vec3& outgoing, const Vec3& incident,
                           BsdfValue& value) const {
+    const bool above = outgoing.z() > 0;
+    if (above && incident.z() > 0) return reflect(point, outgoing, incident, value);
+    if (outgoing.z() == 0 || incident.z() == 0 || !(glass(point.uv) > 0)) return false;
+    const Vec3 o = to_upper(outgoing, above), i = to_upper(incident, above);
+    const Vec3 axis = common_perpendicular(outgoing, incident);
+    return i.z() > 0 ? reflect_inside(point, o, i, axis, value)
+                     : refract(point, o, i, above ? eta : 1 / eta, above, axis, value);
+}
+
+bool Principled::reflect_inside(const ShadingPoint& point, const Vec3& o, const Vec3& i, const Vec3& axis,
+                                BsdfValue& value) const {
+    const Microfacets facet = facets(point.uv);
+    const Vec3 m = (o + i).normalized();
+    const float visible = facet.density(m) / ((1 + facet.lambda(o)) * 4 * o.z());
+    const FresnelPacket f = fresnel_dielectric(std::min(o.dot(m), 1.0f), splat(1 / eta)).reflection;
+    const float scale = glass(point.uv) * visible / (1 + facet.lambda(i));
+    value.f.set_fresnel(f.a * scale, f.b * scale, f.c * scale, f.d * scale, axis, axis);
+    value.pdf = visible * f.a[0];
+    return value.pdf > 0;
+}
+
+// As RoughDielectric::transmit, for one index.
+bool Principled::refract(const ShadingPoint& point, const Vec3& o, const Vec3& i, float relative, bool above,
+                         const Vec3& axis, BsdfValue& value) const {
+    const Microfacets facet = facets(point.uv);
+    Vec3 m = o + relative * i;
+    const float length = m.norm();
+    if (length < 1e-7f) return false;
+    m *= (m.z() > 0 ? 1 : -1) / length;
+    const float om = o.dot(m), im = i.dot(m);
+    if (om <= 0 || im >= 0) return false;
+    const FresnelPacket f = fresnel_dielectric(std::min(om, 1.0f), splat(relative)).transmission;
+    const float stretch = -im / sqr(om + relative * im);
+    const float visible = facet.density(m) * om * stretch / (o.z() * (1 + facet.lambda(o)));
+    const float through = glass(point.uv);
+    const Float4 tint = sqrt(base_color.at(*point.wavelengths, point.uv));
+    const Float4 scale = tint * (through * visible / (1 + facet.lambda(-i)));
+    value.f.set_fresnel(f.a * scale, f.b * scale, f.c * scale, splat(0), axis, axis);
+    value.pdf = visible * sqr(relative) * f.a[0] * (above ? shares(point.uv).specular * through : 1.0f);
+    return value.pdf > 0;
+}
+
+// From the front to the front.
+bool Principled::reflect(const ShadingPoint& point, const Vec3& outgoing, const Vec3& incident,
+                         BsdfValue& value) const {
     const float cos_o = outgoing.z(), cos_i = incident.z();
-    if (cos_o <= 0 || cos_i <= 0) return false;
-    const Vec2& uv = point.uv;
+    const SurfaceUv& uv = point.uv;
     const Float4 base = base_color.at(*point.wavelengths, uv);
     const Vec3 m = (outgoing + incident).normalized();
     const float cos_m = std::clamp(outgoing.dot(m), 1e-6f, 1.0f);
@@ -123,7 +192,9 @@ bool Principled::evaluate(const ShadingPoint& point, const Vec3& outgoing, const
     add_to(value.f, depolarizing, outgoing, incident);
 
     const Shares share = shares(uv);
-    value.pdf = share.specular * visible + share.clearcoat * coat_density * m.z() / (4 * cos_m) +
+    // What glass refracts is not reflected.
+    const float reflecting = 1 - glass(uv) * (1 - fresnel.a[0]);
+    value.pdf = share.specular * reflecting * visible + share.clearcoat * coat_density * m.z() / (4 * cos_m) +
                 (1 - share.specular - share.clearcoat) * cos_i * inv_pi_f;
     return true;
 }
@@ -131,7 +202,7 @@ bool Principled::evaluate(const ShadingPoint& point, const Vec3& outgoing, const
 PluginDescriptor Principled::describe() {
     PluginDescriptor d{"bsdf",
                        "principled",
-                       "Disney's artists' model (Burley), without glass; its dielectric surface polarizes.",
+                       "Disney's artists' model (Burley); its dielectric surface polarizes.",
                        {{"base_color", "spectrum or texture", "", "0.5", "0 .. 1", "of the body, or of the metal"}}};
     const auto number = [&](const char* name, const char* fallback, const char* doc) {
         d.parameters.push_back({name, "number or texture", "", fallback, "0 .. 1", doc});
@@ -139,6 +210,7 @@ PluginDescriptor Principled::describe() {
     number("roughness", "0.5", "its square is the alpha of the facets");
     number("anisotropic", "0", "facets rougher along the tangent");
     number("metallic", "0", "share of metal");
+    number("spec_trans", "0", "share of glass in what is no metal");
     number("spec_tint", "0", "share of the surface's reflection that takes the hue of base_color");
     number("sheen", "0", "light at grazing angles, as on cloth");
     number("sheen_tint", "0", "share of it that takes the hue of base_color");
@@ -147,7 +219,6 @@ PluginDescriptor Principled::describe() {
     number("clearcoat_gloss", "0", "its sharpness");
     d.parameters.push_back({"specular", "number", "", "0.5", "0 .. 1", "sets the index: 0.5 is 1.5"});
     d.parameters.push_back({"eta", "number", "", "", "1 .. 5", "index, instead of specular"});
-    d.parameters.push_back({"spec_trans", "number", "", "0", "0", "glass is not supported: use roughdielectric"});
     for (const char* name :
          {"diffuse_reflectance_sampling_rate", "main_specular_sampling_rate", "clearcoat_sampling_rate"})
         d.parameters.push_back({name, "number", "", "1", "", "accepted, without effect"});
@@ -181,9 +252,9 @@ Principled Principled::build(const Properties& node, const BsdfBuilder& builder)
     // Normal reflectance is 0.08 specular.
     const double specular = range("specular", node.number("specular", 0.5), 0, 1);
     p.eta = range("eta", node.number("eta", 2 / (1 - std::sqrt(0.08 * specular)) - 1), 1, 5);
-    if (const auto trans = share("spec_trans", 0); trans.varies() || trans.values().front() != 0)
-        throw input_error(node.location_of("spec_trans"), "the glass of \"principled\" is not supported", "",
-                          "use \"roughdielectric\", or \"blendbsdf\" of it and this");
+    p.spec_trans = share("spec_trans", 0);
+    // Glass of index 1 has no facets to refract at.
+    if (node.has("spec_trans")) p.eta = std::max(p.eta, 1.001f);
     for (const char* name :
          {"diffuse_reflectance_sampling_rate", "main_specular_sampling_rate", "clearcoat_sampling_rate"})
         node.number(name, 1.0);

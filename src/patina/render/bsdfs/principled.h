@@ -1,8 +1,8 @@
 #pragma once
 // `principled`, the artists' model of Burley (2012), Physically based shading at Disney, and (2015), Extending the
-// Disney BRDF, with Mitsuba's parameters, without its glass (`spec_trans`).
+// Disney BRDF to a BSDF, with Mitsuba's parameters.
 //
-//   diffuse    (1 - metallic) base/pi ((1 - flatness) (Fd + Fr) + flatness Fs),   w(c) = (1 - c)^5
+//   diffuse    (1 - metallic)(1 - spec_trans) base/pi ((1 - flatness) (Fd + Fr) + flatness Fs),   w(c) = (1 - c)^5
 //                Fd = (1 - w_o/2)(1 - w_i/2),   R = 2 roughness (i.m)^2,   Fr = R (w_o + w_i + w_o w_i (R - 1))
 //                Fs = 5/4 (Fs90 (1/(cos_o + cos_i) - 1/2) + 1/2),   Fs90 = prod over o, i of 1 + w (R/2 - 1)
 //   sheen      (1 - metallic) sheen w(i.m) times 1, or the hue of base by sheen_tint
@@ -11,10 +11,13 @@
 //              F = (1 - metallic)((1 - spec_tint) Fresnel + spec_tint Schlick(hue of base)) + metallic Schlick(base)
 //   clearcoat  clearcoat/4 Schlick(0.04) D_1 G1 G1: D_1 with the long tails of GTR of exponent 1, alpha from 0.1 to
 //              0.001 by clearcoat_gloss, G1 of GGX 0.25; as in Mitsuba without 1/(cos_o cos_i)
+//   glass      (1 - metallic) spec_trans sqrt(base) times the refraction of rough_dielectric.h, and from behind, where
+//              nothing else is, (1 - metallic) spec_trans times its reflection
 //
-// The dielectric's reflection polarizes with its Fresnel matrix; the rest, whose optics nobody knows, depolarizes.
-// Reciprocal. Not energy conserving: retro-reflection and sheen give energy at grazing angles to bright, rough
-// surfaces; facets lose some as in rough_conductor.h. Black from behind.
+// The dielectric's reflection and refraction polarize with their Fresnel matrices; the rest, whose optics nobody knows,
+// depolarizes. Reciprocal, refraction after division by the square of the index. Not energy conserving:
+// retro-reflection and sheen give energy at grazing angles to bright, rough surfaces; facets lose some as in
+// rough_conductor.h and rough_dielectric.h. Black from behind without glass.
 
 #include "patina/render/bsdf.h"
 #include "patina/render/microfacet.h"
@@ -24,7 +27,8 @@ namespace patina::render {
 
 struct Principled {
     Texture base_color;
-    ScalarTexture roughness, anisotropic, metallic, spec_tint, sheen, sheen_tint, flatness, clearcoat, clearcoat_gloss;
+    ScalarTexture roughness, anisotropic, metallic, spec_trans, spec_tint, sheen, sheen_tint, flatness, clearcoat,
+        clearcoat_gloss;
     float eta = 1.5f;
 
     bool is_delta(const ShadingPoint&) const { return false; }
@@ -35,12 +39,19 @@ struct Principled {
     static Principled build(const Properties& node, const BsdfBuilder& builder);
 
   private:
-    // Probabilities of drawing from the specular lobe and from the clearcoat; the rest is the cosine's.
+    // Probabilities of drawing from the facets, which reflect or refract, and from the clearcoat; the rest is the
+    // cosine's.
     struct Shares {
         float specular, clearcoat;
     };
-    Shares shares(const Vec2& uv) const;
-    Microfacets facets(const Vec2& uv) const;
+    Shares shares(const SurfaceUv& uv) const;
+    Microfacets facets(const SurfaceUv& uv) const;
+    float glass(const SurfaceUv& uv) const { return (1 - metallic.at(uv)) * spec_trans.at(uv); }
+    bool refract(const ShadingPoint& point, const Vec3& o, const Vec3& i, float relative, bool above, const Vec3& axis,
+                 BsdfValue& value) const;
+    bool reflect_inside(const ShadingPoint& point, const Vec3& o, const Vec3& i, const Vec3& axis,
+                        BsdfValue& value) const;
+    bool reflect(const ShadingPoint& point, const Vec3& outgoing, const Vec3& incident, BsdfValue& value) const;
     Float4 body(const ShadingPoint& point, Float4 base, float cos_o, float cos_i, float cos_m) const;
     Float4 hue(const ShadingPoint& point, Float4 base) const;
 };

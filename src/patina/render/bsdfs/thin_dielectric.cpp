@@ -35,16 +35,16 @@ bool ThinDielectric::sample(const ShadingPoint& point, const Vec3& outgoing, flo
     if (outgoing.z() == 0) return false;
     const Wavelengths& w = *point.wavelengths;
     const Pane pane = pane_of(std::abs(outgoing.z()), interior_index.at(w) / exterior_index.at(w));
-    const float reflectance = mean(pane.reflection.a);
-    const bool reflected = u < reflectance;
+    const float chance = point.chance_of_reflection(mean(pane.reflection.a));
+    const bool reflected = u < chance;
     const FresnelPacket& f = reflected ? pane.reflection : pane.transmission;
     sample.incident = reflected ? Vec3(-outgoing.x(), -outgoing.y(), outgoing.z()) : Vec3(-outgoing);
-    sample.pdf = reflected ? reflectance : 1 - reflectance;
+    sample.pdf = reflected ? chance : 1 - chance;
     sample.delta = true;
     if (!(sample.pdf > 0)) return false;
     const Texture& factor = reflected ? specular_reflectance : specular_transmittance;
     const Float4 scale = factor.at(w, point.uv) / sample.pdf;
-    const Vec3 axis = common_perpendicular(Vec3::UnitZ(), outgoing);
+    const Vec3 axis = perpendicular_to_normal(outgoing);
     sample.weight.set_fresnel(f.a * scale, f.b * scale, f.c * scale, f.d * scale, axis, axis);
     return true;
 }

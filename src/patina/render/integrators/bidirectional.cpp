@@ -90,11 +90,13 @@ class Joiner {
                     radiance = map.radiance(c_.w, direction);
                     map_pdf = map.pdf(direction);
                 }
-                add(e, radiance, origin_pdf, ray_pdf, lights.choice_probability(e, camera_[t - 2].position()) * map_pdf);
+                add(e, radiance, origin_pdf, ray_pdf,
+                    lights.choice_probability(e, camera_[t - 2].position()) * map_pdf);
             }
         } else if (v.emitter >= 0) {
             float origin_pdf = 0, ray_pdf = 0;
-            c_.emission.surface_pdfs(v.emitter, v.to_previous.dot(v.point.geometric_normal), origin_pdf, ray_pdf);
+            c_.emission.surface_pdfs(v.emitter, v.to_previous.dot(v.point.geometric_normal),
+                                     lights.area_density(v.emitter, v.point.uv), origin_pdf, ray_pdf);
             const float direct =
                 lights.surface_pdf(v.emitter, c_.scene().geometry, v.hit, v.point, camera_[t - 2].position());
             add(v.emitter, lights.surface_radiance(v.emitter, v.point, v.to_previous, c_.w), origin_pdf, ray_pdf,
@@ -130,7 +132,8 @@ class Joiner {
             else if (infinite)
                 c_.emission.environment_pdfs(light.emitter, light.direction, origin_pdf, ray_pdf);
             else
-                c_.emission.surface_pdfs(light.emitter, -light.direction.dot(light.normal), origin_pdf, ray_pdf);
+                c_.emission.surface_pdfs(light.emitter, -light.direction.dot(light.normal), light.area_density,
+                                         origin_pdf, ray_pdf);
             const double direct = light.delta ? light.pdf : per_area(light.pdf, v.position(), lamp_);
             share = share_of(1, t, lamp_, origin_pdf, ray_pdf, direct, light.delta);
         }
@@ -213,7 +216,8 @@ class Joiner {
             hit.primitive = shape.is_mesh ? 0 : shape.first;
             SurfacePoint at = lamp.point;
             const float pdf = c_.scene().geometry.shape_pdf(hit, at, first.position());
-            direct_pdf_ = choice * per_area(pdf, first.position(), lamp);
+            direct_pdf_ =
+                choice * lights.area_density(lamp.emitter, lamp.point.uv) * per_area(pdf, first.position(), lamp);
         } else if (!std::holds_alternative<ConstantEmitter>(emitter)) {
             direct_pdf_ = choice;
         }

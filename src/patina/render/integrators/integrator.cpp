@@ -28,6 +28,12 @@ int at_least(const Properties& node, const char* name, std::int64_t fallback, st
 // Where light does not fade, only roulette ends a path; begun earlier than asked for it changes no mean.
 constexpr int latest_roulette = 256;
 
+// Of Mitsuba's schedule of work; here the samples of a pixel follow one another anyway.
+void accept_schedule(const Properties& node) {
+    at_least(node, "samples_per_pass", 1, 1);
+    at_least(node, "block_size", 0, 0);
+}
+
 // What all integrators take.
 template <class Settings>
 Settings common_settings(const Properties& node, bool hide_emitters) {
@@ -35,6 +41,7 @@ Settings common_settings(const Properties& node, bool hide_emitters) {
     settings.max_depth = at_least(node, "max_depth", -1, -1);
     settings.rr_depth = std::min(at_least(node, "rr_depth", 5, 1), latest_roulette);
     settings.hide_emitters = node.boolean("hide_emitters", hide_emitters);
+    accept_schedule(node);
     return settings;
 }
 
@@ -75,6 +82,7 @@ std::unique_ptr<Integrator> direct(const Properties& node) {
     settings.max_depth = 2;
     settings.hide_emitters = node.boolean("hide_emitters", false);
     for (const char* name : {"shading_samples", "emitter_samples", "bsdf_samples"}) at_least(node, name, 1, 0);
+    accept_schedule(node);
     return std::make_unique<PathIntegrator>(settings);
 }
 
@@ -91,7 +99,7 @@ std::unique_ptr<Integrator> build_named(const Properties& node) {
 }  // namespace
 
 bool is_wrapper(const Properties& integrator) {
-    return integrator.type == "stokes" || integrator.type == "aov";
+    return integrator.type == "stokes" || integrator.type == "aov" || integrator.type == "moment";
 }
 
 const Properties& wrapped_integrator(const Properties& integrator) {

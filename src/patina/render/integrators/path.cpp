@@ -16,13 +16,35 @@ namespace {
 constexpr std::uint32_t first_draw = 8, draws_per_vertex = 8;
 enum VertexDraw : std::uint32_t { light_choice, light_point, lobe_choice, lobe_direction, roulette };
 
+// An event of which the throughput has the first column only, as long as nothing but unpolarized light arrives there:
+// enough to complete it. Three quarters of a paint's table can be spared where the path meets a lamp, the sky or a
+// depolarizer next.
+struct AbbreviatedEvent {
+    Throughput before;
+    const Bsdf* bsdf;
+    SurfacePoint point;
+    Vec3 outgoing, incident;  // local
+    float factor;             // that makes a weight of the model's value
+};
+using AbbreviatedSlot = std::optional<AbbreviatedEvent>;
+
+bool may_abbreviate(const Bsdf& bsdf) {
+    return std::holds_alternative<Paint>(bsdf.model);
+}
+bool may_abbreviate(const Scene& scene) {
+    return !scene.lights.any_polarized() &&
+           std::ranges::any_of(scene.bsdfs, [](const Bsdf& bsdf) { return may_abbreviate(bsdf); });
+}
+
 // One path being traced: where it is, what it carries, and how the last step was drawn.
 class PathState {
   public:
-    PathState(const TransportProblem& problem, bool one_class, CameraSample& sample)
+    // `last_event` is where the path keeps its abbreviated event; null: it is not to abbreviate any.
+    PathState(const TransportProblem& problem, bool one_class, CameraSample& sample, AbbreviatedSlot* last_event)
         : scene_(problem.scene),
           classes_(problem.classes),
           one_class_(one_class),
+          last_event_(last_event),
           sample_(sample),
           ray_(sample.camera.ray),
           throughput_(sample.camera.stokes_axis) {}
@@ -33,7 +55,7 @@ class PathState {
     void meet(const Hit& hit) {
         hit_ = hit;
         scene_.geometry.find_surface(ray_, hit, point_);
-        if (last_event_ && !depolarizes(bsdf())) complete_last_event();
+        if (has_abbreviated() && !depolarizes(bsdf())) complete_last_event();
     }
     void note_camera_hit(bool hit) { sample_.record->hit = hit; }
 
@@ -86,15 +108,18 @@ class PathState {
         BsdfSample sample;
         const Vec3 outgoing = point_.frame.to_local(-ray_.direction);
         ShadingPoint shading = shading_point();
-        const bool abbreviate = may_abbreviate();
+        const bool abbreviate = last_event_ && may_abbreviate(bsdf());
         shading.unpolarized_light = abbreviate;
-        if (!sample_event(shading, outgoing, lobe, u, sample)) return false;
+        const bool may_even = evened_choices_ < most_evened_choices && !throughput_.depolarized();
+        if (may_even) shading.least_share = least_share_of_a_way;
+        if (!bsdf_sample(bsdf(), shading, outgoing, lobe, u, sample)) return false;
+        if (may_even && sample.delta && sample.pdf <= 1 - least_share_of_a_way) ++evened_choices_;
         events_ = sample.delta && !one_class_ ? classes_.after(events_, ScatteringEvent::specular)
                                               : after_continuous_event(shading, outgoing);
         axes_to_world(point_.frame, sample.weight);
-        last_event_.reset();
+        if (last_event_) last_event_->reset();
         if (abbreviate && !sample.delta) {
-            last_event_ = AbbreviatedEvent{throughput_, &bsdf(), point_, outgoing, sample.incident, 1 / sample.pdf};
+            last_event_->emplace(throughput_, &bsdf(), point_, outgoing, sample.incident, 1 / sample.pdf);
             throughput_.append_for_unpolarized(sample.weight, -ray_.direction);
         } else {
             append(sample.weight, -ray_.direction);
@@ -119,59 +144,22 @@ class PathState {
         const float survival = std::min(carried, 0.95f);
         if (!(u < survival)) return false;
         throughput_.scale(1 / survival);
-        if (last_event_) last_event_->factor /= survival;
+        if (has_abbreviated()) (*last_event_)->factor /= survival;
         return true;
     }
 
   private:
-    // An event of which the throughput has the first column only, as long as nothing but unpolarized light arrives
-    // there: enough to complete it.
-    struct AbbreviatedEvent {
-        Throughput before;
-        const Bsdf* bsdf;
-        SurfacePoint point;
-        Vec3 outgoing, incident;  // local
-        float factor;             // that makes a weight of the model's value
-    };
     // Reflection off glass carries little light but much of the polarization, so the rarer of two ways is taken with at
     // least this probability; only at the first two such events, for the weights of the other way multiply.
     static constexpr float least_share_of_a_way = 0.25f;
     static constexpr int most_evened_choices = 2;
 
-    // Does the lobe's number choose between two delta functions and nothing else?
-    static bool has_two_ways(const Bsdf& bsdf) {
-        return std::holds_alternative<Dielectric>(bsdf.model) || std::holds_alternative<ThinDielectric>(bsdf.model);
-    }
-    bool sample_event(const ShadingPoint& shading, const Vec3& outgoing, float lobe, const Vec2& u,
-                      BsdfSample& sample) {
-        if (evened_choices_ == most_evened_choices || !has_two_ways(bsdf()) || throughput_.depolarized())
-            return bsdf_sample(bsdf(), shading, outgoing, lobe, u, sample);
-
-        // Ask for reflection, which is the way of small numbers, to know how probable it is.
-        constexpr float largest_number = 1 - 0x1p-24f;
-        if (!bsdf_sample(bsdf(), shading, outgoing, 0, u, sample)) return false;
-        const float reflected = sample.pdf;
-        if (reflected > 1 - 1e-4f) return bsdf_sample(bsdf(), shading, outgoing, lobe, u, sample);
-        const float share = std::clamp(reflected, least_share_of_a_way, 1 - least_share_of_a_way);
-        ++evened_choices_;
-        if (lobe < share) {
-            sample.weight.scale(splat(reflected / share));
-            return true;
-        }
-        if (!bsdf_sample(bsdf(), shading, outgoing, largest_number, u, sample)) return false;
-        sample.weight.scale(splat((1 - reflected) / (1 - share)));
-        return true;
-    }
-
-    // Three quarters of a paint's table can be spared where the path meets a lamp, the sky or a depolarizer next.
-    bool may_abbreviate() const {
-        return std::holds_alternative<Paint>(bsdf().model) && !scene_.lights.any_polarized();
-    }
     static bool depolarizes(const Bsdf& bsdf) {
         return std::holds_alternative<Diffuse>(bsdf.model) || std::holds_alternative<OrenNayar>(bsdf.model);
     }
+    bool has_abbreviated() const { return last_event_ && last_event_->has_value(); }
     void complete_last_event() {
-        const AbbreviatedEvent& event = *last_event_;
+        const AbbreviatedEvent& event = **last_event_;
         const ShadingPoint shading{&w(), event.point.uv, scene_.bsdfs.data()};
         BsdfValue value;
         bsdf_evaluate(*event.bsdf, shading, event.outgoing, event.incident, value);
@@ -179,7 +167,7 @@ class PathState {
         axes_to_world(event.point.frame, value.f);
         throughput_ = event.before;
         append(value.f, event.point.frame.to_world(event.outgoing));
-        last_event_.reset();
+        last_event_->reset();
     }
     const Wavelengths& w() const { return sample_.wavelengths; }
     const Bsdf& bsdf() const { return scene_.bsdfs[scene_.geometry.shapes[hit_.shape].bsdf]; }
@@ -215,7 +203,8 @@ class PathState {
 
     const Scene& scene_;
     const LightPathClassifier& classes_;
-    const bool one_class_;  // events need not be told apart
+    const bool one_class_;               // events need not be told apart
+    AbbreviatedSlot* const last_event_;  // filled if the throughput has no more than its first column
     CameraSample& sample_;
     Ray ray_;
     Throughput throughput_;
@@ -228,7 +217,6 @@ class PathState {
     bool last_delta_ = true, hero_only_ = false;
     StokesPacket direct_;  // light of a lamp, if nothing is in its way
     int direct_events_ = 0;
-    std::optional<AbbreviatedEvent> last_event_;  // if the throughput has no more than its first column
 #ifndef NDEBUG
     bool events_realizable_ = true;
 #endif
@@ -240,12 +228,15 @@ class PathBlock {
   public:
     PathBlock(const TransportProblem& problem, const PathIntegrator::Settings& settings,
               std::span<CameraSample> samples)
-        : geometry_(problem.scene.geometry), settings_(settings) {
+        : geometry_(problem.scene.geometry), choose_lamps_(problem.scene.lights.must_choose()), settings_(settings) {
         paths_.reserve(samples.size());
         alive_.reserve(samples.size());
         lit_.reserve(samples.size());
         const bool one_class = problem.classes.class_count() == 1;
-        for (CameraSample& sample : samples) alive_.push_back(&paths_.emplace_back(problem, one_class, sample));
+        if (may_abbreviate(problem.scene)) abbreviated_.resize(samples.size());
+        for (std::size_t i = 0; i < samples.size(); ++i)
+            alive_.push_back(&paths_.emplace_back(problem, one_class, samples[i],
+                                                  abbreviated_.empty() ? nullptr : &abbreviated_[i]));
     }
 
     void trace() {
@@ -292,7 +283,7 @@ class PathBlock {
         for_groups(lit_, [&](std::span<PathState*> group) {
             FloatLanes choice, x, y;
             const SamplerBlock draws = samplers(group);
-            choice.store(draws.next(draw(depth, light_choice)));
+            if (choose_lamps_) choice.store(draws.next(draw(depth, light_choice)));
             draws.next2(draw(depth, light_point), x, y);
             RayBlock shadows;
             PathState* waiting[wide_lanes];
@@ -351,7 +342,9 @@ class PathBlock {
     }
 
     const Geometry& geometry_;
+    const bool choose_lamps_;
     const PathIntegrator::Settings& settings_;
+    std::vector<AbbreviatedSlot> abbreviated_;  // of the paths; empty: nothing can be abbreviated
     std::vector<PathState> paths_;
     Paths alive_, lit_;
 };

@@ -129,6 +129,7 @@ void trace_light_path(const SubpathContext& context, int most_vertices, Sampler&
     lamp.kind = emitted.infinite ? PathVertex::Kind::infinity : PathVertex::Kind::light;
     lamp.point.position = emitted.position;
     lamp.point.geometric_normal = emitted.normal;
+    lamp.point.uv = emitted.uv;
     lamp.emitter = emitted.emitter;
     lamp.forward = emitted.origin_pdf;
     path.push_back(lamp);
