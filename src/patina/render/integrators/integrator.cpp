@@ -25,14 +25,14 @@ int at_least(const Properties& node, const char* name, std::int64_t fallback, st
     return static_cast<int>(value);
 }
 
-// Where light does not fade, only roulette ends a path; begun earlier than asked for it changes no mean.
-constexpr int latest_roulette = 256;
-
 // Of Mitsuba's schedule of work; here the samples of a pixel follow one another anyway.
 void accept_schedule(const Properties& node) {
     at_least(node, "samples_per_pass", 1, 1);
     at_least(node, "block_size", 0, 0);
 }
+
+// Where light does not fade, only roulette ends a path; begun earlier than asked for it changes no mean.
+constexpr int latest_roulette = 256;
 
 // What all integrators take.
 template <class Settings>
