@@ -19,7 +19,8 @@ int run(const Options& options, Session& session) {
     const bool paint = options.kind == "paint";
     std::filesystem::path path = options.name;
     if (!path.has_extension()) path += paint ? ".toml" : ".xml";
-    if (std::filesystem::exists(path))
+    std::error_code ignored;
+    if (std::filesystem::exists(path, ignored))
         throw Error(ErrorKind::runtime, fmt::format("{}: exists already", path.string()));
     write_text_file(path, paint ? jobs::starter_recipe() : jobs::starter_scene());
     session.console.result(path.string());

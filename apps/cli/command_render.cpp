@@ -133,7 +133,8 @@ nlohmann::json to_json(const render::Measurement& m, const StokesImage& image) {
 int run(const Options& options, const CLI::App& command, Session& session) {
     const jobs::RenderRequest request = make_request(options, command, session);
     jobs::check_picture_output(options.output);
-    const bool checkpoint_there = std::filesystem::exists(request.checkpoint);
+    std::error_code ignored;
+    const bool checkpoint_there = std::filesystem::exists(request.checkpoint, ignored);
     if (checkpoint_there && !options.resume)
         session.console.note(fmt::format("{} is there from a render that was stopped: --resume would go on with it",
                                          request.checkpoint.string()));

@@ -82,7 +82,8 @@ int run(const Options& options, Session& session) {
     expect_writable(options.output);
     request.checkpoint = options.output + ".checkpoint";
     request.resume = options.resume;
-    if (options.resume && !std::filesystem::exists(request.checkpoint))
+    std::error_code ignored;
+    if (options.resume && !std::filesystem::exists(request.checkpoint, ignored))
         console.note(fmt::format("note: no {}: nothing to resume, all is solved", request.checkpoint.string()));
 
     const jobs::SolveResult result = jobs::solve(recipe, request, session.control());

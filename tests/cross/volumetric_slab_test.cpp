@@ -5,7 +5,7 @@
 #include "patina/coating/spectral_medium.h"
 #include "patina/core/constants.h"
 #include "patina/jobs/solve.h"
-#include "patina/jobs/validation/siewert2000_data.h"
+#include "patina/jobs/validation/siewert.h"
 #include "patina/render/stokes_frames.h"
 #include "patina/render/test_support.h"
 #include "patina/rt/solver.h"
@@ -19,20 +19,6 @@ using Eigen::Vector4d;
 optics::ExpansionCoefficients rayleigh() {
     return {{1, 0, 0.5}, {0, 0, 3}, {0, 0, 0}, {0, 1.5, 0}, {0, 0, std::sqrt(6.0) / 2}, {0, 0, 0}};
 }
-// Signs as in docs/conventions.md.
-optics::ExpansionCoefficients spheroids() {
-    optics::ExpansionCoefficients x;
-    for (const auto& row : siewert2000::coefficients) {
-        x.alpha2.push_back(row[0]);
-        x.alpha1.push_back(row[1]);
-        x.beta1.push_back(-row[2]);
-        x.alpha4.push_back(row[3]);
-        x.beta2.push_back(row[4]);
-        x.alpha3.push_back(row[5]);
-    }
-    return x;
-}
-
 // A slab one unit thick below z = 0, a hundred wide: what comes in at the sides has no way to the middle.
 Node slab(Node bsdf) {
     const Node shape =
@@ -123,7 +109,7 @@ TEST(VolumetricSlab, RayleighSlabAgreesWithTheSolver) {
 
 // Siewert's problem IIA: spheroids, whose matrix has six different elements, and the largest V of the published cases.
 TEST(VolumetricSlab, SpheroidsOfSiewertAgreeWithTheSolver) {
-    const rt::Problem problem{1.0, {{1.0, siewert2000::single_scattering_albedo, spheroids(), 1.0}}, rt::BlackBase{}};
+    const rt::Problem problem = jobs::validation::siewert_problem();
     expect_field(problem, {{0.3, 90, true}, {0.5, 40, true}, {0.3, -90, false}}, 600, 7);
 }
 

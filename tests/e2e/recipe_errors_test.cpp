@@ -189,6 +189,17 @@ TEST_F(CommandLine, UnwritableOutputIsARuntimeErrorAndLeavesNothing) {
     EXPECT_THAT(outcome.err, HasSubstr("nowhere"));
 }
 
+TEST_F(CommandLine, NamesThatAreTooLongForAFileAreRefused) {
+    const std::string name(1000, 'a');
+    for (const std::string& command :
+         {"new paint " + name, "solve " + example("siewert_problem_IIA.toml").string() + " --resume -o " + name + ".h5",
+          "render " + example("polar_balls.xml").string() + " --size 8x8 --spp 1 -o " + name + ".exr"}) {
+        const Outcome outcome = patina(command);
+        EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+        EXPECT_EQ(outcome.err.find("defect"), std::string::npos) << outcome.err;
+    }
+}
+
 // A result shorter than the buffer is lost only when that is sent, at the very end.
 TEST_F(CommandLine, AResultThatAFullDiskDoesNotTakeIsARuntimeError) {
     for (const char* angles : {"--theta-o-deg 0 --phi-deg 0", "--phi-deg 0:350:1"}) {

@@ -251,9 +251,11 @@ TEST_P(EveryBsdf, EvaluatesToWhatItSamples) {
             ShadingPoint unpolarized = point_;
             unpolarized.unpolarized_light = true;
             ASSERT_TRUE(bsdf_evaluate(bsdf(), unpolarized, outgoing, s.incident, column));
-            EXPECT_EQ(column.f.matrix(2)(0, 0), value.f.matrix(2)(0, 0));
+            // Tables may add the same products up in another order.
+            const double rounding = 1e-6 * value.f.matrix(2)(0, 0);
+            EXPECT_NEAR(column.f.matrix(2)(0, 0), value.f.matrix(2)(0, 0), rounding);
             if (value.f.form != ScatteringMatrix::Form::general) continue;
-            for (int row = 0; row < 4; ++row) EXPECT_EQ(column.f.m[row][2], value.f.m[row][2]);
+            for (int row = 0; row < 4; ++row) EXPECT_NEAR(column.f.m[row][2], value.f.m[row][2], rounding);
         }
 }
 

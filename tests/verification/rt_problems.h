@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "patina/jobs/validation/siewert.h"
 #include "patina/jobs/validation/siewert2000_data.h"
 #include "patina/rt/solver.h"
 
@@ -16,21 +17,8 @@ inline std::vector<std::string> solver_names() {
     return names;
 }
 
-inline optics::ExpansionCoefficients siewert_expansion() {
-    optics::ExpansionCoefficients x;
-    for (const auto& row : siewert2000::coefficients) {
-        x.alpha2.push_back(row[0]);
-        x.alpha1.push_back(row[1]);
-        x.beta1.push_back(-row[2]);
-        x.alpha4.push_back(row[3]);
-        x.beta2.push_back(row[4]);
-        x.alpha3.push_back(row[5]);
-    }
-    return x;
-}
-
 inline Problem siewert() {
-    return {1.0, {{1.0, siewert2000::single_scattering_albedo, siewert_expansion(), 1.0}}, BlackBase{}};
+    return jobs::validation::siewert_problem();
 }
 
 inline optics::ExpansionCoefficients rayleigh() {

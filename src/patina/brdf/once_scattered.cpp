@@ -6,6 +6,7 @@
 #include "patina/brdf/interpolation.h"
 #include "patina/brdf/meridian_frame.h"
 #include "patina/core/constants.h"
+#include "patina/math/path_integrals.h"
 #include "patina/optics/scattering/expansion.h"
 
 namespace patina::brdf {
@@ -13,19 +14,6 @@ namespace patina::brdf {
 using optics::Mueller;
 
 namespace {
-
-// int_0^T exp(-t a) exp(-(T-t) b) dt.
-double through(double a, double b, double thickness) {
-    if (std::isinf(thickness)) return 0.0;
-    const double slow = std::min(a, b), apart = std::abs(a - b);
-    return std::exp(-thickness * slow) *
-           (apart * thickness > 0.0 ? -std::expm1(-apart * thickness) / apart : thickness);
-}
-
-// int_0^T exp(-t (a+b)) dt.
-double back(double a, double b, double thickness) {
-    return -std::expm1(-thickness * (a + b)) / (a + b);
-}
 
 Mueller turned() {
     return Eigen::Vector4d(1, 1, -1, -1).asDiagonal();
@@ -98,7 +86,8 @@ Mueller OnceScatteredLight::operator()(double mu_o, double mu_i, double phi) con
     const Ray in = ray(mu_i), out = ray(mu_o);
     if (in.mu < 1e-9 || out.mu < 1e-9) return Mueller::Zero();
     const double a = 1 / out.mu, b = 1 / in.mu;
-    const double same_face = back(a, b, layer_.optical_thickness), other_face = through(a, b, layer_.optical_thickness);
+    const double same_face = math::path_back(a, b, layer_.optical_thickness),
+                 other_face = math::path_through(a, b, layer_.optical_thickness);
     const Mueller reversal = Eigen::Vector4d(1, 1, 1, -1).asDiagonal();
     const Mueller leave = turned() * reversal * out.down.transpose() * reversal * turned();
     Mueller result = leave * same_face * phase_matrix(out.mu, -in.mu, phi) * in.down;

@@ -40,8 +40,7 @@ RecipeLayer with_unit_thickness(RecipeLayer layer) {
 // Nodes that integrate every phase function exactly.
 int exact_streams(const std::vector<rt::Problem>& problems) {
     int order = 0;
-    for (const rt::Problem& problem : problems)
-        for (const rt::Layer& layer : problem.layers) order = std::max(order, layer.expansion.order());
+    for (const rt::Problem& problem : problems) order = std::max(order, problem.order());
     return std::min(order / 2 + 2, most_streams);
 }
 

@@ -40,6 +40,15 @@ Composition read_composition(const TableReader& reader, const Context& context) 
     return composition;
 }
 
+// A file beside the recipe. Names that no file can have (too long, say) belong to files that are not there.
+fs::path file_named(const TableReader& reader, const char* key, const std::string& name, const Context& context) {
+    const fs::path file = context.folder / name;
+    std::error_code ignored;
+    if (!fs::exists(file, ignored))
+        throw input_error(reader.where(key), fmt::format("{}: file not found", file.string()));
+    return file;
+}
+
 OpticalLayer read_optical_layer(const TableReader& reader, bool is_lowest, const Context& context) {
     static constexpr std::string_view composition_keys[] = {"thickness_um", "binder",  "binder_density_g_cm3",
                                                             "pigments",     "packing", "volume_solids"};
@@ -56,10 +65,7 @@ OpticalLayer read_optical_layer(const TableReader& reader, bool is_lowest, const
     const bool by_matrix = reader.has("matrix");
     if (by_matrix) reader.forbid(expansion_key, "matrix says how the layer scatters");
     const char* key = by_matrix ? "matrix" : "expansion";
-    const fs::path file = context.folder / reader.text(key);
-    std::error_code ignored;
-    if (!fs::exists(file, ignored))
-        throw input_error(reader.where(key), fmt::format("{}: file not found", file.string()));
+    const fs::path file = file_named(reader, key, reader.text(key), context);
     layer.expansion = only_law(by_matrix ? read_matrix_csv(file) : read_expansion_csv(file), file);
     return layer;
 }
@@ -74,9 +80,7 @@ RecipeLayer read_layer(const toml::table& table, const std::string& path, bool i
 spectral::Spectrum read_reflectance(const TableReader& reader, const Context& context) {
     const toml::node* node = reader.node("reflectance");
     if (!node || !node->is_string()) return spectral::Spectrum(reader.number("reflectance"));
-    const fs::path file = context.folder / *node->value<std::string>();
-    if (!fs::exists(file))
-        throw input_error(reader.where("reflectance"), fmt::format("{}: file not found", file.string()));
+    const fs::path file = file_named(reader, "reflectance", *node->value<std::string>(), context);
     spectral::Spectrum spectrum = spectral::read_spectrum(file, spectral::Outside::hold);
     for (const double value : spectrum.values())
         if (!(value >= 0.0 && value <= 1.0))
@@ -94,8 +98,7 @@ rt::RoughSurface read_roughness(const TableReader& reader) {
 
 // Appends the layers of another recipe, and takes its base.
 void append_recipe(const TableReader& reader, const Context& context, Recipe& recipe) {
-    const fs::path file = context.folder / reader.text("recipe");
-    if (!fs::exists(file)) throw input_error(reader.where("recipe"), fmt::format("{}: file not found", file.string()));
+    const fs::path file = file_named(reader, "recipe", reader.text("recipe"), context);
     if (context.depth >= most_nested_recipes)
         throw input_error(reader.where("recipe"), fmt::format("{} recipes lie on each other", most_nested_recipes + 1),
                           "does one lie on itself?");
@@ -118,8 +121,7 @@ void append_recipe(const TableReader& reader, const Context& context, Recipe& re
 }
 
 TableBase read_table_base(const TableReader& reader, const Context& context, const Recipe& recipe) {
-    const fs::path file = context.folder / reader.text("file");
-    if (!fs::exists(file)) throw input_error(reader.where("file"), fmt::format("{}: file not found", file.string()));
+    const fs::path file = file_named(reader, "file", reader.text("file"), context);
     if (const auto* optical = std::get_if<OpticalLayer>(&recipe.layers.back().content);
         optical && std::isinf(optical->optical_thickness))
         throw input_error(reader.where("file"), "an infinite layer hides what lies below it", "", "leave the base out");

@@ -187,5 +187,22 @@ TEST(Recipe, LiesOnAnotherRecipe) {
     EXPECT_THROW(parse_recipe(top, "r.toml", folder / "nowhere"), Error);
 }
 
+// A file name that no file can have is that of a missing file.
+TEST(Recipe, FileNamesMayBeTooLong) {
+    const std::string name(5000, 'a'), layer = "[[layers]]\noptical_thickness = 1\nsingle_scattering_albedo = 1\n";
+    const std::string whole = layer + "expansion = \"examples/data/siewert_problem_IIA.csv\"\n";
+    for (const std::string& text :
+         {layer + "expansion = \"" + name + "\"\n",
+          whole + "[base]\ntype = \"lambertian\"\nreflectance = \"" + name + "\"\n",
+          whole + "[base]\ntype = \"recipe\"\nrecipe = \"" + name + "\"\n",
+          whole + "[base]\ntype = \"table\"\nrefractive_index = 1.5\nfile = \"" + name + "\"\n"})
+        try {
+            parse_recipe(text, "paint.toml", PATINA_SOURCE_DIR);
+            ADD_FAILURE() << text.substr(0, 200);
+        } catch (const Error& error) {
+            EXPECT_THAT(error.what(), ::testing::HasSubstr("file not found"));
+        }
+}
+
 }  // namespace
 }  // namespace patina::coating

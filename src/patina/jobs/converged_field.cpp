@@ -12,9 +12,7 @@ namespace {
 constexpr int fewest_streams = 12, usual_streams = 32, most_streams = 72;
 
 int exact_streams(const rt::Problem& problem) {
-    int order = 0;
-    for (const rt::Layer& layer : problem.layers) order = std::max(order, layer.expansion.order());
-    return std::clamp(order / 2 + 8, usual_streams, most_streams);
+    return std::clamp(problem.order() / 2 + 8, usual_streams, most_streams);
 }
 
 using Radiances = std::vector<std::vector<std::vector<optics::Stokes>>>;

@@ -75,12 +75,6 @@ std::vector<OpticalProblem> set_up(const coating::Recipe& recipe, const std::vec
     return problems;
 }
 
-int order_of(const OpticalProblem& optical) {
-    int order = 0;
-    for (const rt::Layer& layer : optical.problem.layers) order = std::max(order, layer.expansion.order());
-    return order;
-}
-
 // A solver whose values scatter has no streams to choose, and its error is no difference of two solutions.
 bool is_statistical(const rt::Solver& solver) {
     return solver.name() == "montecarlo";
@@ -95,7 +89,7 @@ double fourier_tolerance(const SolveRequest& request) {
 std::vector<size_t> pilot_wavelengths(const std::vector<OpticalProblem>& problems) {
     size_t widest = 0;
     for (size_t w = 0; w < problems.size(); ++w)
-        if (order_of(problems[w]) > order_of(problems[widest])) widest = w;
+        if (problems[w].problem.order() > problems[widest].problem.order()) widest = w;
     const std::set<size_t> pilots{0, problems.size() / 2, problems.size() - 1, widest};
     return {pilots.begin(), pilots.end()};
 }
@@ -109,7 +103,7 @@ SolvePlan make_plan(const std::vector<double>& wavelengths_nm, const std::vector
     SolvePlan plan{wavelengths_nm, {}, 0, 0, {}, {}};
     std::set<std::string> notes, citations;
     for (const OpticalProblem& optical : problems) {
-        plan.largest_expansion_order = std::max(plan.largest_expansion_order, order_of(optical));
+        plan.largest_expansion_order = std::max(plan.largest_expansion_order, optical.problem.order());
         notes.insert(optical.notes.begin(), optical.notes.end());
         citations.insert(optical.citations.begin(), optical.citations.end());
     }

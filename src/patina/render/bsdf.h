@@ -77,6 +77,17 @@ concept BsdfModel = requires(const Model model, const ShadingPoint& point, const
     { model.is_delta(point) } -> std::same_as<bool>;
 };
 
+// The end of sample() where several lobes may have led to sample.incident: weight and density are those of evaluate().
+template <class Model>
+bool weigh_by_all_lobes(const Model& model, const ShadingPoint& point, const Vec3& outgoing, BsdfSample& sample) {
+    BsdfValue value;
+    if (!model.evaluate(point, outgoing, sample.incident, value) || !(value.pdf > 0)) return false;
+    sample.pdf = value.pdf;
+    sample.weight = value.f;
+    sample.weight.scale(splat(1 / value.pdf));
+    return true;
+}
+
 // What a model's constructor from a scene file is given.
 struct BsdfBuilder {
     const SceneResources* resources;

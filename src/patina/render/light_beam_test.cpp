@@ -45,10 +45,10 @@ TEST(LightBeam, ReversedMatricesAreTheMatricesOfTheReversedRay) {
     const Texture one(Spectrum(1.0f));
     const Vec3 oblique = Vec3(0.5f, -0.3f, 0.7f).normalized();
     using Kind = PolarizationElement::Kind;
-    const ScalarTexture turned(23.0f), none(0.0f);  // degrees
-    expect_reciprocal({LinearPolarizer{{Kind::linear_polarizer, turned, none, one}}}, oblique, 0.5f, "polarizer");
-    expect_reciprocal({Retarder{{Kind::retarder, turned, ScalarTexture(63.0f), one}}}, oblique, 0.5f, "retarder");
-    expect_reciprocal({CircularPolarizer{{Kind::right_circular, turned, none, one}}}, oblique, 0.5f, "circular");
+    const ScalarTexture theta_deg(23), delta_deg(63), none;
+    expect_reciprocal({LinearPolarizer{{Kind::linear_polarizer, theta_deg, none, one}}}, oblique, 0.5f, "polarizer");
+    expect_reciprocal({Retarder{{Kind::retarder, theta_deg, delta_deg, one}}}, oblique, 0.5f, "retarder");
+    expect_reciprocal({CircularPolarizer{{Kind::right_circular, theta_deg, none, one}}}, oblique, 0.5f, "circular");
     expect_reciprocal({Conductor{Spectrum(0.4f), Spectrum(2.5f), one}}, oblique, 0.5f, "conductor");
     const Bsdf glass{Dielectric{Spectrum(1.5f), Spectrum(1.0f), one, one, false}};
     expect_reciprocal(glass, oblique, 0.0f, "reflection");

@@ -20,17 +20,7 @@ std::uint16_t to_half(float value) {
     return std::bit_cast<std::uint16_t>(half);
 }
 constexpr std::uint16_t half_sign = 0x8000;
-// One element of a Mueller matrix for four wavelengths: four halves.
-Float4 load_element(const std::uint16_t* p) {
-#if defined(__F16C__)
-    return (Float4)_mm_cvtph_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p)));
-#else
-    Float4 element;
-    for (int i = 0; i < 4; ++i) element[i] = static_cast<float>(std::bit_cast<_Float16>(p[i]));
-    return element;
-#endif
-}
-// A column of it: 16 halves.
+// A column of a Mueller matrix for four wavelengths: 16 halves.
 StokesPacket load_column(const std::uint16_t* p) {
 #if defined(__AVX512F__)
     return (StokesPacket)_mm512_cvtph_ps(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p)));
@@ -40,7 +30,12 @@ StokesPacket load_column(const std::uint16_t* p) {
     };
     return {half(p), half(p + 8)};
 #else
-    return make_stokes(load_element(p), load_element(p + 4), load_element(p + 8), load_element(p + 12));
+    const auto element = [p](int row) {
+        Float4 four;
+        for (int i = 0; i < 4; ++i) four[i] = static_cast<float>(std::bit_cast<_Float16>(p[4 * row + i]));
+        return four;
+    };
+    return make_stokes(element(0), element(1), element(2), element(3));
 #endif
 }
 

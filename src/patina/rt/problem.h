@@ -1,6 +1,7 @@
 #pragma once
 // The plane-parallel radiative transfer problem: what a solver is given. It knows no paint and no particle.
 
+#include <algorithm>
 #include <complex>
 #include <memory>
 #include <optional>
@@ -64,6 +65,12 @@ struct Problem {
     // Facets of the top interface; smooth without. It means nothing where the top is index matched.
     std::optional<RoughSurface> top_roughness = std::nullopt;
 
+    // Highest order of the layers' expansions.
+    int order() const {
+        int highest = 0;
+        for (const Layer& layer : layers) highest = std::max(highest, layer.expansion.order());
+        return highest;
+    }
     bool has_rough_top() const { return top_roughness && layers.front().refractive_index != refractive_index_above; }
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "patina/math/path_integrals.h"
 #include "patina/rt/boundary.h"
 
 namespace patina::rt {
@@ -18,19 +19,6 @@ Mueller reversed(const Mueller& path) {
     result.row(3) *= -1.0;
     result.col(3) *= -1.0;
     return result;
-}
-
-// int_0^T exp(-t a) exp(-(T-t) b) dt: light entering at one side and scattered out of the other.
-double through(double a, double b, double thickness) {
-    if (std::isinf(thickness)) return 0.0;
-    const double slow = std::min(a, b), apart = std::abs(a - b);
-    return std::exp(-thickness * slow) *
-           (apart * thickness > 0.0 ? -std::expm1(-apart * thickness) / apart : thickness);
-}
-
-// int_0^T exp(-t (a+b)) dt: light scattered out of the side it came in.
-double back(double a, double b, double thickness) {
-    return -std::expm1(-thickness * (a + b)) / (a + b);
 }
 
 }  // namespace
@@ -153,8 +141,8 @@ void SingleScattering::add_reflection(int m, Eigen::MatrixXd& reflection) const 
             const Mueller &down = lights_[seen.rays[j]].down[p], &up = lights_[seen.rays[j]].up[p];
             for (Eigen::Index i = 0; i < count; ++i) {
                 const double a = 1.0 / seen.mu[i], b = 1.0 / seen.mu[j];
-                const double same = through(a, b, slabs_[p].optical_thickness),
-                             turned = back(a, b, slabs_[p].optical_thickness);
+                const double same = math::path_through(a, b, slabs_[p].optical_thickness),
+                             turned = math::path_back(a, b, slabs_[p].optical_thickness);
                 const Mueller forward = same * sums.same.block<4, 4>(4 * i, 4 * j);
                 const Mueller backward = turned * sums.opposite.block<4, 4>(4 * i, 4 * j);
                 // By reciprocity light leaves the stack as it would come in.
@@ -190,8 +178,8 @@ std::vector<RayLevels> SingleScattering::field(int m, const Eigen::Matrix<double
             for (int i = 0; i < medium.size(); ++i) {
                 if (medium.roles[i] != Role::view) continue;
                 const double a = 1.0 / medium.mu[i], b = 1.0 / medium.mu[j], thickness = slabs_[p].optical_thickness;
-                const Mueller forward = through(a, b, thickness) * sums.same.block<4, 4>(4 * i, 4 * j);
-                const Mueller backward = back(a, b, thickness) * sums.opposite.block<4, 4>(4 * i, 4 * j);
+                const Mueller forward = math::path_through(a, b, thickness) * sums.same.block<4, 4>(4 * i, 4 * j);
+                const Mueller backward = math::path_back(a, b, thickness) * sums.opposite.block<4, 4>(4 * i, 4 * j);
                 emission[medium.rays[i]].down[p] += forward * down + backward * up;
                 emission[medium.rays[i]].up[p] += backward * down + forward * up;
             }

@@ -81,11 +81,7 @@ ScatteringProperties pack(const ScatteringProperties& particles, double packing_
     const double wavenumber = 2.0 * pi * host_index / (1e-3 * wavelength_nm);
     const double diameter = std::cbrt(6.0 * particles.mean_volume_um3 / pi);
     const int nodes = 2 * (particles.expansion.order() + matrix_nodes(0.5 * wavenumber * diameter)) + 2;
-    ScatteringMatrix matrix = evaluate(particles.expansion, math::gauss_legendre(nodes));
-    if (matrix.a1.minCoeff() < -1e-3 * matrix.a1.maxCoeff())
-        throw input_error({}, "an expansion whose a1 is negative in places cannot be packed", "",
-                          "give more orders, or packing = \"independent\"");
-    matrix.a1 = matrix.a1.max(0.0);
+    ScatteringMatrix matrix = matrix_to_pack(particles.expansion, math::gauss_legendre(nodes));
     packed.scattering_um2 *= apply_structure_factor(matrix, packing_fraction, wavenumber, diameter);
     packed.extinction_um2 = packed.scattering_um2 + particles.absorption_um2;
     packed.expansion = expand(matrix, 1e-9);

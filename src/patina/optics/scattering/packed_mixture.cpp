@@ -5,7 +5,6 @@
 
 #include "patina/core/constants.h"
 #include "patina/core/contract.h"
-#include "patina/core/error.h"
 #include "patina/optics/scattering/expansion.h"
 #include "patina/optics/scattering/structure_factor.h"
 
@@ -30,15 +29,6 @@ math::Quadrature angles_for(std::span<const MixtureComponent> components, double
     return math::gauss_legendre(2 * (order + matrix_nodes(0.5 * wavenumber * largest_diameter)) + 2);
 }
 
-ScatteringMatrix independent_matrix(const ScatteringProperties& properties, const math::Quadrature& angles) {
-    ScatteringMatrix matrix = evaluate(properties.expansion, angles);
-    if (matrix.a1.minCoeff() < -1e-3 * matrix.a1.maxCoeff())
-        throw input_error({}, "an expansion whose a1 is negative in places cannot be packed", "",
-                          "give more orders, or packing = \"independent\"");
-    matrix.a1 = matrix.a1.max(0.0);
-    return matrix;
-}
-
 // What each kind's scattering at one angle is to be multiplied with: its own structure factor, and what interference
 // with the other kinds makes of the sum. `strengths` are n C_sca a1 of the kinds.
 Eigen::ArrayXd packing_factors(const Eigen::MatrixXd& structure, const Eigen::ArrayXd& strengths) {
@@ -61,7 +51,7 @@ void pack(std::span<MixtureComponent> components, double host_index, double wave
         angles_for(components, wavenumber, *std::max_element(diameters.begin(), diameters.end()));
 
     std::vector<ScatteringMatrix> matrices;
-    for (const MixtureComponent& c : components) matrices.push_back(independent_matrix(c.properties, angles));
+    for (const MixtureComponent& c : components) matrices.push_back(matrix_to_pack(c.properties.expansion, angles));
 
     const auto kinds = static_cast<Eigen::Index>(components.size());
     for (Eigen::Index angle = 0; angle < angles.size(); ++angle) {

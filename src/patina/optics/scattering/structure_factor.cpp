@@ -5,6 +5,8 @@
 
 #include "patina/core/constants.h"
 #include "patina/core/contract.h"
+#include "patina/core/error.h"
+#include "patina/optics/scattering/expansion.h"
 
 namespace patina::optics {
 
@@ -75,6 +77,15 @@ Eigen::MatrixXd percus_yevick_mixture(std::span<const double> diameters, std::sp
         }
     }
     return (factor.adjoint() * factor).real().llt().solve(Eigen::MatrixXd::Identity(count, count));
+}
+
+ScatteringMatrix matrix_to_pack(const ExpansionCoefficients& expansion, const math::Quadrature& cosines) {
+    ScatteringMatrix matrix = evaluate(expansion, cosines);
+    if (matrix.a1.minCoeff() < -1e-3 * matrix.a1.maxCoeff())
+        throw input_error({}, "an expansion whose a1 is negative in places cannot be packed", "",
+                          "give more orders, or packing = \"independent\"");
+    matrix.a1 = matrix.a1.max(0.0);
+    return matrix;
 }
 
 double apply_structure_factor(ScatteringMatrix& matrix, double volume_fraction, double wavenumber_per_um,

@@ -5,6 +5,8 @@
 
 #include <Eigen/Dense>
 
+#include "patina/math/quadrature.h"
+#include "patina/optics/scattering/expansion_coefficients.h"
 #include "patina/optics/scattering/scattering_matrix.h"
 
 namespace patina::optics {
@@ -23,6 +25,10 @@ double percus_yevick(double volume_fraction, double q_times_diameter);
 // Lengths in one unit, q >= 0 in its inverse. shape [kinds][kinds]
 Eigen::MatrixXd percus_yevick_mixture(std::span<const double> diameters, std::span<const double> number_densities,
                                       double q);
+
+// F at the angles of `cosines`, of particles that are to be packed: the amplitudes of what interferes are roots of a1.
+// Throws Error(input) where a1 is negative by more than the rounding of coefficients given with few digits.
+ScatteringMatrix matrix_to_pack(const ExpansionCoefficients& expansion, const math::Quadrature& cosines);
 
 // Multiplies F(theta) by S(q), q = 2 k sin(theta/2), normalises it again and returns <S> = (1/2) int a1 S dcos, by
 // which the scattering cross section of a particle shrinks. Polarization by a single particle is not changed by packing

@@ -21,12 +21,7 @@ bool Blend::sample(const ShadingPoint& point, const Vec3& outgoing, float u, con
         return true;
     }
     // Either model may have led here.
-    BsdfValue value;
-    if (!evaluate(point, outgoing, sample.incident, value) || !(value.pdf > 0)) return false;
-    sample.pdf = value.pdf;
-    sample.weight = value.f;
-    sample.weight.scale(splat(1 / value.pdf));
-    return true;
+    return weigh_by_all_lobes(*this, point, outgoing, sample);
 }
 
 bool Blend::evaluate(const ShadingPoint& point, const Vec3& outgoing, const Vec3& incident, BsdfValue& value) const {

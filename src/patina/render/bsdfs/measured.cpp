@@ -28,12 +28,7 @@ bool sample_table(const Model& model, const ShadingPoint& point, const Vec3& out
                   BsdfSample& sample) {
     if (outgoing.z() <= 0) return false;
     sample.incident = draw(model.proposal, outgoing, u, u2);
-    BsdfValue value;
-    if (!model.evaluate(point, outgoing, sample.incident, value) || !(value.pdf > 0)) return false;
-    sample.pdf = value.pdf;
-    sample.weight = value.f;
-    sample.weight.scale(splat(1 / value.pdf));
-    return true;
+    return weigh_by_all_lobes(model, point, outgoing, sample);
 }
 
 Microfacets proposal_of(const Properties& node) {

@@ -66,12 +66,7 @@ bool PlasticLayer::sample(const ShadingPoint& point, const Vec3& outgoing, float
     } else {
         sample.incident = cosine_hemisphere(u2);
     }
-    BsdfValue value;
-    if (!evaluate(point, outgoing, sample.incident, value) || !(value.pdf > 0)) return false;
-    sample.pdf = value.pdf;
-    sample.weight = value.f;
-    sample.weight.scale(splat(1 / value.pdf));
-    return true;
+    return weigh_by_all_lobes(*this, point, outgoing, sample);
 }
 
 bool PlasticLayer::evaluate(const ShadingPoint& point, const Vec3& outgoing, const Vec3& incident,

@@ -111,12 +111,7 @@ bool Principled::sample(const ShadingPoint& point, const Vec3& outgoing, float u
         sample.incident = cosine_hemisphere(u2);
     }
     sample.delta = false;
-    BsdfValue value;
-    if (!evaluate(point, outgoing, sample.incident, value) || !(value.pdf > 0)) return false;
-    sample.pdf = value.pdf;
-    sample.weight = value.f;
-    sample.weight.scale(splat(1 / value.pdf));
-    return true;
+    return weigh_by_all_lobes(*this, point, outgoing, sample);
 }
 
 bool Principled::evaluate(const ShadingPoint& point, const Vec3& outgoing, const Vec3& incident,

@@ -51,12 +51,7 @@ bool RoughDielectric::sample(const ShadingPoint& point, const Vec3& outgoing, fl
     }
     sample.incident = to_upper(i, above);
     sample.delta = false;
-    BsdfValue value;
-    if (!evaluate(point, outgoing, sample.incident, value)) return false;
-    sample.pdf = value.pdf;
-    sample.weight = value.f;
-    sample.weight.scale(splat(1 / value.pdf));
-    return true;
+    return weigh_by_all_lobes(*this, point, outgoing, sample);
 }
 
 bool RoughDielectric::evaluate(const ShadingPoint& point, const Vec3& outgoing, const Vec3& incident,

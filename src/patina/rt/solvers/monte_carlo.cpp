@@ -227,8 +227,7 @@ Reflection MonteCarloSolver::reflection(const Problem& problem, const SolveOptio
 
     // The lobes of a rough top are about alpha wide. A phase matrix of order L has no modes beyond m = L, nor has any
     // number of scatterings.
-    int orders = 1;
-    for (const Layer& layer : problem.layers) orders = std::max(orders, layer.expansion.order() + 1);
+    int orders = problem.order() + 1;
     if (stack.rough_top) orders = std::max(orders, static_cast<int>(std::ceil(8.0 / problem.top_roughness->alpha)) + 1);
     Reflection reflection{rule.nodes, rule.weights, {}, {}};
     reflection.modes.assign(static_cast<std::size_t>(orders), Eigen::MatrixXd::Zero(4 * count, 4 * count));
