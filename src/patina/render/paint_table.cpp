@@ -279,7 +279,7 @@ StokesPacket PaintTable::first_column(const Place& at, const WavelengthPlace& wa
     return sum;
 }
 
-void PaintTable::whole_matrix(const Place& at, const WavelengthPlace& wavelength, StokesPacket* columns) const {
+void PaintTable::whole_matrix(const Place& at, const WavelengthPlace& wavelength, StokesPacket* matrix) const {
     const int next = nodes_ > 1 ? 64 : 0;
     StokesPacket sums[4]{}, reversed[4]{};
     bool any_reversed = false;
@@ -293,7 +293,7 @@ void PaintTable::whole_matrix(const Place& at, const WavelengthPlace& wavelength
         }
     });
     if (any_reversed) add_reversed(reversed, sums);
-    for (int column = 0; column < 4; ++column) columns[column] = sums[column];
+    for (int column = 0; column < 4; ++column) matrix[column] = sums[column];
 }
 
 void PaintTable::evaluate(const Wavelengths& w, const Vec3& outgoing, const Vec3& incident, bool first_column_only,

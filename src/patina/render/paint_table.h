@@ -98,7 +98,7 @@ class PaintTable {
     WavelengthPlace wavelength_place(float nm) const;
     // The body at `at` for four wavelengths in the order of the quarters: its first column, and all four.
     StokesPacket first_column(const Place& at, const WavelengthPlace& wavelength) const;
-    void whole_matrix(const Place& at, const WavelengthPlace& wavelength, StokesPacket* columns) const;
+    void whole_matrix(const Place& at, const WavelengthPlace& wavelength, StokesPacket* matrix) const;
     // visit(theta_o, theta_i, phi, weights of the lower and of the higher wavelength) for the nodes about a place.
     template <class Visit>
     void for_corners(const Place& at, const WavelengthPlace& wavelength, const Visit& visit) const;
