@@ -101,11 +101,17 @@ Slide slide_of(const Properties& node) {
     return slide;
 }
 
-SpotEmitter spot(const Properties& node, const SceneResources& resources) {
+// Where a spot or projector stands and looks; its light is left to the caller.
+SpotEmitter spot_in_place(const Properties& node) {
     SpotEmitter e;
     const Eigen::Matrix4d m = node.transform("to_world");
     e.position = place(m.block<3, 1>(0, 3), node.location_of("to_world"));
     e.axis = unit(m.block<3, 1>(0, 2), node.location_of("to_world"));
+    return e;
+}
+
+SpotEmitter spot(const Properties& node, const SceneResources& resources) {
+    SpotEmitter e = spot_in_place(node);
     e.intensity = emission(node, "intensity");
     const double cutoff_deg = node.number("cutoff_angle", 20.0),
                  beam_deg = node.number("beam_width", 0.75 * cutoff_deg);
@@ -130,10 +136,7 @@ SpotEmitter spot(const Properties& node, const SceneResources& resources) {
 // The pixel a direction falls on is that of a perspective camera in its place: u to the right of who looks along +z, v
 // downwards.
 SpotEmitter projector(const Properties& node, const SceneResources& resources) {
-    SpotEmitter e;
-    const Eigen::Matrix4d m = node.transform("to_world");
-    e.position = place(m.block<3, 1>(0, 3), node.location_of("to_world"));
-    e.axis = unit(m.block<3, 1>(0, 2), node.location_of("to_world"));
+    SpotEmitter e = spot_in_place(node);
     const double scale = node.number("scale", 1.0);
     if (!(scale >= 0) || !(scale < 1e12))
         throw input_error(node.location_of("scale"), "scale must be >= 0", fmt::format("it is {}", scale));
